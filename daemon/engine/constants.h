@@ -1,0 +1,27 @@
+#pragma once
+// Every tolerance of the engine: its value, its unit and the reason for it.
+
+namespace haptic::engine {
+
+/// The one length tolerance, as a fraction of the model's extent (diagonal of its bounding box). It is used
+/// with the SAME value wherever a side, a rim or a rest is decided: two values that differ make endless loops
+/// between them. 1e-11 is 1000 times the rounding of a coordinate and 1e-8 of a small cell.
+inline constexpr double kLengthTolerance = 1e-11;
+
+/// A cell whose smallest altitude is below this fraction of the extent is refused as flat: its planes would
+/// not be known to kLengthTolerance.
+inline constexpr double kFlatCell = 1e-8;
+
+/// Transitions that one proxy may make in one tick. About two are needed for each boundary crossed; 20 m/s
+/// through 1 mm cells needs 119. Beyond it the proxy stays where it is (always an admissible place) and the
+/// tick is counted.
+inline constexpr int kTransitionLimit = 4096;
+
+/// Nearness, in length tolerances, at which a proxy that goes round in a circle is put on a vertex or an
+/// edge.
+inline constexpr double kRelocationReach = 20.0;
+
+/// How often a circle may be broken in one tick before the proxy is left where it is.
+inline constexpr int kRelocationLimit = 3;
+
+}  // namespace haptic::engine

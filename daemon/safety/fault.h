@@ -1,0 +1,27 @@
+#pragma once
+// A fault is latched: forces stay zero until a person clears it. (A limit, by contrast, only acts and is
+// reported.)
+
+#include <cstdint>
+
+namespace haptic::safety {
+
+enum class FaultKind : std::uint8_t {
+  kNone,
+  kNotFinite,    // a force or a pose that is no number; value and limit are 0
+  kOverSpeed,    // value and limit in m/s
+  kStaleSample,  // value and limit in s
+  kMissedTicks,  // value and limit in ticks
+};
+
+inline constexpr std::uint32_t kNoDevice = 0xffffffff;
+
+struct Fault {
+  FaultKind kind = FaultKind::kNone;
+  std::uint32_t device = kNoDevice;  // index in the device set; kNoDevice: of the whole daemon
+  std::uint64_t tick = 0;
+  double value = 0.0;  // what was measured
+  double limit = 0.0;  // what is allowed
+};
+
+}  // namespace haptic::safety

@@ -1,0 +1,75 @@
+#pragma once
+// The last stage before the device, always on: whatever the engine, a scene or a client asks for, what leaves
+// here is finite, bounded in magnitude and in rate, and zero unless armed and free of faults. Servo thread;
+// real-time safe.
+//
+//   wanted force -> finite? -> ramp after arming -> magnitude -> slew -> device
+//                    | no, or over-speed, stale sample, missed ticks
+//                    +-> zero, and a latched named fault
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "safety/fault.h"
+
+namespace haptic::safety {
+
+struct GuardLimits {
+  double max_force = 5.0;         // N, magnitude
+  double max_force_rate = 500.0;  // N/s, magnitude of the change
+  double max_speed = 2.0;         // m/s of the device
+  double arm_ramp = 0.5;          // s from none of the force to all of it
+  double max_sample_age = 0.02;   // s
+};
+
+/// Which limits acted in the last tick.
+enum Limit : std::uint32_t { kLimitNone = 0, kLimitForce = 1, kLimitRate = 2, kLimitRamp = 4 };
+
+/// What the guard must know of one device in one tick.
+struct GuardInput {
+  std::uint64_t tick = 0;
+  std::uint32_t device = 0;  // index, for the fault
+  bool present = false;      // there is a sample
+  double sample_age = 0.0;   // s
+  glm::dvec3 position{0.0};  // m
+  glm::dvec3 velocity{0.0};  // m/s
+  glm::dvec3 force{0.0};     // N wanted
+  glm::dvec3 torque{0.0};    // N m wanted; scaled as the force is
+};
+
+struct GuardOutput {
+  glm::dvec3 force{0.0};
+  glm::dvec3 torque{0.0};
+  std::uint32_t limits = kLimitNone;
+};
+
+/// The guard of one device.
+class ForceGuard {
+ public:
+  explicit ForceGuard(const GuardLimits& limits) noexcept : limits_(limits) {}
+
+  /// Lets force through from now on, ramping up. Refused (false) while a fault is latched.
+  bool arm() noexcept;
+  /// Armed and fully ramped at once: for `simulate`, where no hand is near.
+  void arm_at_once() noexcept;
+  void disarm() noexcept;
+  bool armed() const noexcept { return armed_; }
+
+  /// Latches a fault from outside (missed ticks, another device). The first one is kept.
+  void latch(const Fault& fault) noexcept;
+  /// Forgets the fault; stays disarmed.
+  void clear() noexcept;
+  const Fault& fault() const noexcept { return fault_; }
+
+  /// The force for this tick of `dt` seconds.
+  GuardOutput guard(const GuardInput& input, double dt) noexcept;
+
+ private:
+  GuardLimits limits_;
+  bool armed_ = false;
+  double ramp_ = 0.0;  // 0 to 1
+  glm::dvec3 last_force_{0.0};
+  Fault fault_;
+};
+
+}  // namespace haptic::safety

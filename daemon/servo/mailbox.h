@@ -1,0 +1,183 @@
+#pragma once
+// Every crossing between the servo thread and the rest of the daemon. All queues are single-producer
+// single-consumer, all memory is reserved in the constructor, and nothing here waits.
+//
+//     io thread  -- Command -->  servo thread        bounded; a full queue refuses the request
+//     io thread  <-- Event ---   servo thread        answers, faults, memory to free; a lost event is counted
+//     io thread  <-- Snapshot -- servo thread        a ring; a slow io thread loses the oldest, counted
+//     io thread  <-- LoopStats - servo thread        newest value
+
+#include <array>
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "engine/constraint.h"
+#include "engine/world.h"
+#include "rt/latency_histogram.h"
+#include "rt/triple_buffer.h"
+#include "safety/fault.h"
+
+namespace haptic::servo {
+
+/// A scene that was built off the servo thread, with all the memory that running it needs.
+struct PreparedScene {
+  std::uint64_t revision = 0;
+  engine::World world;
+  std::vector<std::uint32_t> device_of_finger;   // index in the device set; kNoDevice: none has this name
+  std::vector<engine::FingerPose> finger_poses;  // scratch of the tick
+};
+
+enum class CommandKind : std::uint8_t {
+  kArm,
+  kDisarm,
+  kPause,
+  kResume,
+  kStep,   // `ticks` while paused
+  kReset,  // the scene to its state before tick 0
+  kClearFault,
+  kSwapScene,  // `scene` becomes the one that runs; the old one comes back in kSceneRetired
+  kResetStats,
+};
+
+struct Command {
+  CommandKind kind = CommandKind::kDisarm;
+  std::uint64_t request = 0;       // echoed in the answer
+  std::uint64_t ticks = 0;         // kStep
+  PreparedScene* scene = nullptr;  // kSwapScene; owned by whoever holds the command
+};
+
+enum class EventKind : std::uint8_t {
+  kDone,          // answer to a command
+  kNothingToDo,   // answer: it was so already
+  kFaultRefused,  // answer: a fault is latched
+  kFaultLatched,  // `fault`
+  kTicksMissed,   // `count` periods were slept through
+  kSceneRetired,  // `scene` is no longer used and is the receiver's to free
+};
+
+struct Event {
+  EventKind kind = EventKind::kDone;
+  CommandKind command = CommandKind::kDisarm;  // of an answer
+  std::uint64_t request = 0;
+  std::uint64_t tick = 0;
+  std::uint64_t count = 0;
+  safety::Fault fault;
+  PreparedScene* scene = nullptr;
+};
+
+struct ObjectSnapshot {
+  glm::dvec3 position;          // of the object frame, m, world
+  glm::dquat orientation;       // world_from_object
+  glm::dvec3 velocity;          // of the centre of gravity, m/s, world
+  glm::dvec3 angular_velocity;  // rad/s, world
+  glm::dvec3 force;             // by HIPs, N, world
+  glm::dvec3 torque;            // by HIPs, about the centre of gravity, N m, world
+};
+
+struct HipSnapshot {
+  glm::dvec3 position;  // m, world
+  glm::dvec3 force;     // N on the user, before the guard, world
+};
+
+/// An object that holds a HIP: its state is not Out.
+struct ContactSnapshot {
+  std::uint32_t hip;
+  std::uint32_t object;
+  engine::ConstraintState state;
+  bool slipping;
+  glm::dvec3 proxy;  // m, world
+  glm::dvec3 force;  // N on the user, world
+};
+
+struct DeviceSnapshot {
+  bool present;
+  glm::dvec3 position;     // m, world
+  glm::dquat orientation;  // world_from_device
+  glm::dvec3 velocity;     // m/s, world
+  glm::dvec3 force;        // N on the user, after the guard, world
+  glm::dvec3 torque;       // N m on the user, about the device's origin, world
+  double sample_age;       // s
+  std::uint32_t buttons;
+  std::uint32_t limits;  // safety::Limit bits
+  safety::Fault fault;
+};
+
+/// One tick as the rest of the daemon sees it. The vectors have their capacity from the start and only change
+/// size within it.
+struct Snapshot {
+  std::uint64_t tick = 0;
+  std::uint64_t monotonic_ns = 0;
+  std::uint64_t scene_revision = 0;
+  bool armed = false;
+  bool paused = false;
+  std::uint64_t missed_ticks = 0;
+  std::vector<ObjectSnapshot> objects;
+  std::vector<HipSnapshot> hips;
+  std::vector<ContactSnapshot> contacts;
+  std::vector<DeviceSnapshot> devices;
+  std::uint64_t dropped_contacts = 0;  // beyond the capacity
+};
+
+/// What is reserved for snapshots; a scene that needs more is refused before it gets here.
+struct Capacity {
+  std::size_t objects = 256;
+  std::size_t fingers = 64;
+  std::size_t hips = 16384;
+  std::size_t devices = 16;
+};
+
+/// Snapshots from the servo thread to the io thread in the order of ticks. When the reader is too slow the
+/// writer takes back the oldest one that was not read, and counts it. Wait-free on both sides.
+class SnapshotRing {
+ public:
+  static constexpr std::size_t kSlots = 64;
+
+  explicit SnapshotRing(const Capacity& capacity);
+
+  /// Servo thread: the buffer to fill, empty but for its capacity.
+  Snapshot& writable() noexcept { return *spare_; }
+  /// Servo thread: hands over what writable() returned.
+  void publish() noexcept;
+  /// io thread: the oldest snapshot that is left, or nullptr. Valid until the next call.
+  const Snapshot* take() noexcept;
+
+  std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+
+ private:
+  std::vector<Snapshot> buffers_;
+  std::array<std::atomic<Snapshot*>, kSlots> slots_;
+  boost::lockfree::spsc_queue<Snapshot*, boost::lockfree::capacity<kSlots + 2>> returned_;
+  Snapshot* spare_ = nullptr;  // servo thread's
+  Snapshot* taken_ = nullptr;  // io thread's
+  std::atomic<std::uint64_t> published_{0};
+  std::uint64_t next_read_ = 0;  // io thread's
+  std::atomic<std::uint64_t> lost_{0};
+};
+
+/// The stages of a tick that are timed, in their order.
+enum class Stage : std::uint8_t { kCommands, kRead, kStep, kGuard, kWrite, kPublish, kTick };
+inline constexpr std::size_t kStages = 7;
+
+struct LoopStats {
+  std::uint64_t tick = 0;
+  std::uint64_t missed_ticks = 0;
+  std::uint64_t lost_events = 0;
+  rt::LatencyHistogram wakeup;
+  std::array<rt::LatencyHistogram, kStages> stages;
+  engine::TransitionTable transitions;
+};
+
+struct Mailbox {
+  explicit Mailbox(const Capacity& capacity) : snapshots(capacity) {}
+
+  boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<256>> commands;
+  boost::lockfree::spsc_queue<Event, boost::lockfree::capacity<1024>> events;
+  SnapshotRing snapshots;
+  rt::TripleBuffer<LoopStats> stats;
+};
+
+}  // namespace haptic::servo

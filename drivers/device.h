@@ -1,0 +1,64 @@
+#pragma once
+// The one interface between the servo loop and a device. The servo thread calls read() and write() in every
+// tick: both take a bounded time and touch no file, lock or allocator. A driver whose hardware needs I/O does
+// it on a thread of its own and meets the servo by newest-value exchange (rt/triple_buffer.h); a device that
+// is computed needs no thread.
+//
+// Times are nanoseconds of the servo's clock: CLOCK_MONOTONIC in the service, tick / rate in `hapticd
+// simulate`. Poses and forces are in the world frame, SI units.
+
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+
+namespace haptic::drivers {
+
+/// Nanoseconds of the servo's clock.
+using Nanoseconds = std::int64_t;
+
+/// What a device measured.
+struct DeviceSample {
+  Nanoseconds time = 0;                        // when it was measured
+  glm::dvec3 position{0.0, 0.0, 0.0};          // of the device's origin, m
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // world_from_device
+  glm::dvec3 velocity{0.0, 0.0, 0.0};          // m/s
+  std::uint32_t buttons = 0;                   // bit n: button n is down
+};
+
+/// What a device shall do to the hand. After `expires` the driver itself outputs zero, whatever the servo
+/// does.
+struct ForceCommand {
+  Nanoseconds expires = 0;
+  glm::dvec3 force{0.0, 0.0, 0.0};   // N, on the user
+  glm::dvec3 torque{0.0, 0.0, 0.0};  // N m, on the user, about the device's origin
+};
+
+/// What is fixed about a device.
+struct DeviceInfo {
+  std::string name;    // from the config
+  std::string driver;  // e.g. "simulated"
+  double max_force;    // N that it can bear; infinity if it sets no limit
+};
+
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  virtual const DeviceInfo& info() const noexcept = 0;
+
+  /// Opens the device and starts its thread, if it has one. Throws DeviceError. Not real-time safe.
+  virtual void start() = 0;
+
+  /// Outputs zero force, ends the thread, closes the device. Not real-time safe.
+  virtual void stop() noexcept = 0;
+
+  /// The newest sample. False if there is none yet, or the device is gone. `now` is the tick's time. Servo
+  /// thread only.
+  virtual bool read(Nanoseconds now, DeviceSample& sample) noexcept = 0;
+
+  /// The force until the next tick. Servo thread only.
+  virtual void write(Nanoseconds now, const ForceCommand& command) noexcept = 0;
+};
+
+}  // namespace haptic::drivers
