@@ -189,18 +189,6 @@ void CellComplex::add_trees() {
   cell_tree_ = BoxTree(boxes);
 }
 
-Index CellComplex::locate(const glm::dvec3& p) const noexcept {
-  Index found = kNone;
-  cell_tree_.visit_overlaps(Box{p - tolerance_, p + tolerance_}, [&](Index c) {
-    const Cell& cell = cells_[c];
-    for (int i = 0; i < 4; ++i) {
-      if (!(cell.side(i, p) >= -tolerance_)) return;
-    }
-    found = std::min(found, c);
-  });
-  return found;
-}
-
 std::size_t CellComplex::bytes() const noexcept {
   return bytes_of(vertices_) + bytes_of(cells_) + bytes_of(faces_) + bytes_of(rims_) + bytes_of(edges_) +
          bytes_of(edge_cells_) + bytes_of(edge_faces_) + bytes_of(vertex_cells_) + bytes_of(vertex_faces_) +

@@ -33,4 +33,12 @@ inline constexpr double kRelocationReach = 20.0;
 /// How often a circle may be broken in one tick before the proxy is left where it is.
 inline constexpr int kRelocationLimit = 3;
 
+/// Coordinates of a finger beyond this (m) are a broken sample: even this far out, a double still resolves
+/// 1e-10 m.
+inline constexpr double kWorldReach = 1e6;
+
+/// How far the squared norm of a device's quaternion may be from 1: wide for one sent in single precision,
+/// narrow for anything that is no rotation.
+inline constexpr double kUnitTolerance = 1e-3;
+
 }  // namespace haptic::engine
