@@ -43,8 +43,6 @@ std::vector<glm::dvec3> make_fingertip(const TextSource& source, const std::stri
 
 }  // namespace
 
-std::string item(const std::string& list, int index) { return list + "[" + std::to_string(index) + "]"; }
-
 void Names::add(const std::string& name, int index) {
   const std::string field = item(list_, index) + ".name";
   if (name.empty()) source_.fail(field, "is missing: each " + list_ + " needs a name");

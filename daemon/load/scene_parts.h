@@ -16,9 +16,6 @@
 
 namespace haptic::load {
 
-/// "object[2]"
-std::string item(const std::string& list, int index);
-
 /// Names that must be there and be unique in one list of the message.
 class Names {
  public:
