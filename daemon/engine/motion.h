@@ -12,6 +12,7 @@
 // lets q approach the lag only with the time constant drag/k. Points in the object frame. Pure; real-time
 // safe.
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -68,9 +69,9 @@ inline void spend_time(Pull& pull, const glm::dvec3& q, const glm::dvec3& goal, 
     const double lag = in.yield_force / pull.stiffness + lag_by_friction;
     const double before = glm::distance(q, goal) - lag;
     const double after = glm::distance(*stop, goal) - lag;
-    if (after > 0.0) used = std::fmin(used, in.drag / pull.stiffness * std::log(before / after));
+    if (after > 0.0) used = std::min(used, in.drag / pull.stiffness * std::log(before / after));
   }
-  pull.time_left = std::fmax(0.0, pull.time_left - used);
+  pull.time_left = std::max(0.0, pull.time_left - used);
 }
 
 }  // namespace haptic::engine
