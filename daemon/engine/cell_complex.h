@@ -7,8 +7,10 @@
 //       /|`.         Plane i of a cell lies opposite its vertex i and looks inward:
 //      / |  `.           side_i(p) = normal_i . p - offset_i   (m, positive inside)
 //     /  |    `.
-//   v0---|----v2     A face is shared by two cells. Its plane is stored once, positive toward cells[0], and each
-//     `. |   .'      cell's record holds it, or its exact negative: the two cells can never disagree about a side.
+//   v0---|----v2     A face is shared by two cells. Its plane is stored once, positive toward cells[0], and
+//   each
+//     `. |   .'      cell's record holds it, or its exact negative: the two cells can never disagree about a
+//     side.
 //       `|.'
 //        v1
 //
@@ -141,8 +143,15 @@ class CellComplex {
   /// The length below which two points are one (m): kLengthTolerance times the extent.
   double tolerance() const noexcept { return tolerance_; }
 
-  /// The cell that holds p, kNone if none does. Real-time safe: visits a bounded number of tree nodes.
-  Index locate(const glm::dvec3& p) const noexcept;
+  /// The lowest cell that holds p, within the tolerance; kNone if none does. Real-time safe: visits a bounded
+  /// number of tree nodes.
+  Index locate(const glm::dvec3& p) const noexcept {
+    return locate_if(p, [](Index) { return true; });
+  }
+
+  /// The lowest cell that holds p and that `accept(cell)` takes; it is asked for every cell that holds p.
+  template <class Accept>
+  Index locate_if(const glm::dvec3& p, Accept&& accept) const noexcept;
 
   /// Bytes of all tables together.
   std::size_t bytes() const noexcept;
@@ -162,5 +171,19 @@ class CellComplex {
   Box bounds_;
   double tolerance_ = 0.0;
 };
+
+template <class Accept>
+Index CellComplex::locate_if(const glm::dvec3& p, Accept&& accept) const noexcept {
+  Index found = kNone;
+  const Box point{p - tolerance_, p + tolerance_};
+  cell_tree_.visit_overlaps(point, [&](Index index) {
+    const Cell& cell = cells_[index];
+    for (int i = 0; i < 4; ++i) {
+      if (!(cell.side(i, p) >= -tolerance_)) return;
+    }
+    if (accept(index) && index < found) found = index;
+  });
+  return found;
+}
 
 }  // namespace haptic::engine

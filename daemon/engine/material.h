@@ -1,19 +1,7 @@
 #pragma once
-// Materials: what the paper calls motion functions (section 2.3, equations 1, 3 and 4), as one family.
-//
-// A proxy at q that is drawn toward its goal c (the HIP p itself inside a cell, the foot of p on a face or an
-// edge) follows it, but stays behind by a threshold distance s*:
-//
-//      c ----- s* ----- q' <-------------- q        s* = F/k + mu |p - c|
-//
-// F is the yield force of the material that is moved in, mu the Coulomb coefficient of the material that is
-// touched: static until the proxy moved in the last tick, kinetic from then on. A viscous material lets q
-// approach the threshold only with time constant drag/k. Everything here is pure and real-time safe.
+// Materials: the numbers from which motion.h makes the paper's motion functions (section 2.3).
 
-#include <cmath>
 #include <limits>
-
-#include "engine/pose.h"
 
 namespace haptic::engine {
 
