@@ -128,8 +128,7 @@ glm::dquat next_orientation(const BodyDynamics& body, const glm::dvec3& angular_
   const glm::dvec3 turn = midpoint_turn(body.mass.inertia, momentum, dt);
   // a body at rest keeps its orientation to the bit
   if (turn == glm::dvec3{0.0}) return orientation;
-  return glm::normalize(orientation *
-                        rotation_by(body.mass.object_from_gravity_centre.orientation * turn));
+  return glm::normalize(orientation * rotation_by(body.mass.object_from_gravity_centre.orientation * turn));
 }
 
 bool is_finite(const glm::dvec3& v) noexcept {

@@ -35,7 +35,7 @@ struct BodyState {
   Pose world_from_object;
   glm::dvec3 velocity{0.0, 0.0, 0.0};          // of the centre of gravity, m/s, world
   glm::dvec3 angular_momentum{0.0, 0.0, 0.0};  // about the centre of gravity, kg m^2/s, world
-  Wrench applied;  // by HIPs in this tick: N, and N m about the centre of gravity, world
+  Wrench applied;  // by HIPs at this instant: N, and N m about the centre of gravity, world
 };
 
 /// Angular velocity (rad/s, world).
@@ -50,7 +50,9 @@ inline glm::dvec3 centre_of_gravity(const BodyDynamics& body, const BodyState& s
 /// Velocity follows the exact solution of m v' = F - b v for a force held over the tick; position moves by
 /// the NEW velocity. Angular momentum L takes the torque and the viscosity the same way in the principal
 /// axes, and orientation follows L by the Lie midpoint rule (gyroscopic term included): torque-free, L is
-/// conserved to the bit and energy has no drift. Needs body.mass.mass > 0. Real-time safe.
+/// conserved to the bit and energy has no drift. Needs body.mass.mass > 0; an axis without inertia does not
+/// turn. A body that would leave the range of a double stops where it is: no NaN comes of finite input.
+/// Real-time safe.
 void integrate(const BodyDynamics& body, const glm::dvec3& gravity, double dt, BodyState& state) noexcept;
 
 }  // namespace haptic::engine

@@ -7,11 +7,9 @@
 //       /|`.         Plane i of a cell lies opposite its vertex i and looks inward:
 //      / |  `.           side_i(p) = normal_i . p - offset_i   (m, positive inside)
 //     /  |    `.
-//   v0---|----v2     A face is shared by two cells. Its plane is stored once, positive toward cells[0], and
-//   each
-//     `. |   .'      cell's record holds it, or its exact negative: the two cells can never disagree about a
-//     side.
-//       `|.'
+//   v0---|----v2     A face is shared by two cells. Its plane is stored once, positive toward cells[0],
+//     `. |   .'      and each cell's record holds it, or its exact negative: the two cells can never
+//       `|.'         disagree about a side.
 //        v1
 //
 // The records are laid out for the order in which a tick asks: a cell alone answers "am I still inside" (its
@@ -113,9 +111,17 @@ class Star {
 
 class CellComplex {
  public:
-  /// Checks the mesh and computes all tables. Throws MeshError naming the first offending cell: an index out
-  /// of range, a repeated vertex, an inverted or flat cell, a non-finite coordinate, a duplicate cell, a face
-  /// with three owners or used twice on one side (overlapping cells). Not real-time safe.
+  /// Checks the mesh and computes all tables, in near-linear time; cells and vertices keep their numbers.
+  /// Throws MeshError naming the first offending cell of the first of these checks that fails: sizes of the
+  /// tables, indices, repeated vertices, non-finite coordinates; extent and distance from the origin;
+  /// inverted and flat cells; coincident vertices; duplicate cells, faces with three owners, faces used twice
+  /// on one side (overlapping cells). Not real-time safe.
+  ///
+  /// Coincident vertices are refused because cells that touch there without sharing a face would be torn
+  /// apart: a proxy would pass from one to the other through Out, and nothing but this would tell. A hull
+  /// that touches itself at a shared vertex or edge is permitted: stars list the cells of all fans. Not
+  /// noticed are cells that overlap without sharing a face. A vertex that no cell uses is ignored: its stars
+  /// are empty.
   static CellComplex build(const TetraMesh& mesh);
 
   std::span<const glm::dvec3> vertices() const noexcept { return vertices_; }
@@ -143,8 +149,8 @@ class CellComplex {
   /// The length below which two points are one (m): kLengthTolerance times the extent.
   double tolerance() const noexcept { return tolerance_; }
 
-  /// The lowest cell that holds p, within the tolerance; kNone if none does. Real-time safe: visits a bounded
-  /// number of tree nodes.
+  /// The lowest cell that holds p, to within tolerance(); kNone if none does. Real-time safe: visits a
+  /// bounded number of tree nodes.
   Index locate(const glm::dvec3& p) const noexcept {
     return locate_if(p, [](Index) { return true; });
   }
@@ -157,6 +163,11 @@ class CellComplex {
   std::size_t bytes() const noexcept;
 
  private:
+  void add_cells_and_faces(const TetraMesh& mesh);
+  void add_edges(const TetraMesh& mesh);
+  void add_stars();
+  void add_trees();
+
   std::vector<glm::dvec3> vertices_;
   std::vector<Cell> cells_;
   std::vector<Face> faces_;

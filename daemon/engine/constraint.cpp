@@ -9,22 +9,6 @@
 namespace haptic::engine {
 namespace {
 
-bool step(Tick& tick, Proxy& proxy) noexcept {
-  switch (proxy.state) {
-    case ConstraintState::kTet:
-      return step_tet(tick, proxy);
-    case ConstraintState::kSur:
-      return step_sur(tick, proxy);
-    case ConstraintState::kEdg:
-      return step_edg(tick, proxy);
-    case ConstraintState::kVer:
-      return step_ver(tick, proxy);
-    case ConstraintState::kOut:
-      break;
-  }
-  return step_out(tick, proxy);
-}
-
 /// The states that a proxy had at one place, to notice when it goes round in a circle.
 class Visited {
  public:
@@ -119,6 +103,22 @@ void settle(Tick& tick, Proxy& proxy, TransitionTable& table, Clock clock) noexc
 }
 
 }  // namespace
+
+bool step(Tick& tick, Proxy& proxy) noexcept {
+  switch (proxy.state) {
+    case ConstraintState::kTet:
+      return step_tet(tick, proxy);
+    case ConstraintState::kSur:
+      return step_sur(tick, proxy);
+    case ConstraintState::kEdg:
+      return step_edg(tick, proxy);
+    case ConstraintState::kVer:
+      return step_ver(tick, proxy);
+    case ConstraintState::kOut:
+      break;
+  }
+  return step_out(tick, proxy);
+}
 
 bool is_permitted(ConstraintState before, ConstraintState after) noexcept {
   constexpr bool kPermitted[kConstraintStates][kConstraintStates] = {

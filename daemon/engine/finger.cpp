@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "engine/constants.h"
 #include "engine/portable_math.h"
 
 namespace haptic::engine {
@@ -55,10 +56,19 @@ std::vector<glm::dvec3> fingertip_layout(double radius, double cap_angle, int hi
     const double depth = height * (i + 0.5) / hips;
     const double ring = std::sqrt(std::max(0.0, depth * (2.0 - depth)));
     const SinCos turn = sin_cos(kGoldenAngle * i);
-    points.push_back(radius * ((1.0 - depth) * axes.pole +
-                               ring * (turn.cosine * axes.across + turn.sine * axes.along)));
+    points.push_back(
+        radius * ((1.0 - depth) * axes.pole + ring * (turn.cosine * axes.across + turn.sine * axes.along)));
   }
   return points;
+}
+
+bool is_usable(const FingerPose& finger) noexcept {
+  const glm::dvec3& p = finger.world_from_device.position;
+  const glm::dquat& q = finger.world_from_device.orientation;
+  const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  // written so that NaN fails
+  return finger.present && std::abs(p.x) <= kWorldReach && std::abs(p.y) <= kWorldReach &&
+         std::abs(p.z) <= kWorldReach && std::abs(norm - 1.0) <= kUnitTolerance;
 }
 
 Wrench sum_wrench(std::span<const glm::dvec3> hip_positions, std::span<const glm::dvec3> hip_forces,

@@ -20,8 +20,9 @@ std::vector<glm::dvec3> point_layout();
 std::vector<glm::dvec3> line_layout(const glm::dvec3& start, const glm::dvec3& end, int hips);
 
 /// `hips` (>= 1) points spread evenly over a spherical cap around the device's origin: the first at the pole,
-/// the rest on an equal-area spiral. `radius` in m, `cap_angle` the half angle of the cap (rad, 0 to pi),
-/// `direction` that of the pole (not zero).
+/// the rest on a spiral outward of which each has an equal share of the cap's area and is a golden angle
+/// (137.5 degrees) on from the one before, as seeds are in a sunflower. `radius` in m, `cap_angle` the half
+/// angle of the cap (rad, 0 to pi), `direction` that of the pole (not zero).
 std::vector<glm::dvec3> fingertip_layout(double radius, double cap_angle, int hips,
                                          const glm::dvec3& direction);
 
@@ -39,6 +40,10 @@ struct FingerPose {
   Pose world_from_device;
   bool present = false;  // false: no sample; its HIPs feel nothing and touch nothing
 };
+
+/// Whether a present finger's pose can be meant: finite, within kWorldReach, and its quaternion a rotation.
+/// Real-time safe.
+bool is_usable(const FingerPose& finger) noexcept;
 
 /// The wrench of HIP forces about the device's origin (world frame; N, N m). Real-time safe.
 Wrench sum_wrench(std::span<const glm::dvec3> hip_positions, std::span<const glm::dvec3> hip_forces,

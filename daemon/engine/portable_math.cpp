@@ -29,8 +29,7 @@ double alternating_series(double x, const std::array<double, N>& ratios) noexcep
 // |r| <= pi/4: the first omitted terms are 1e-19 and 2e-18
 SinCos sin_cos_of_octant(double r) noexcept {
   constexpr std::array kSine{2.0 * 3, 4.0 * 5, 6.0 * 7, 8.0 * 9, 10.0 * 11, 12.0 * 13, 14.0 * 15, 16.0 * 17};
-  constexpr std::array kCosine{1.0 * 2,  3.0 * 4,   5.0 * 6,   7.0 * 8,
-                               9.0 * 10, 11.0 * 12, 13.0 * 14, 15.0 * 16};
+  constexpr std::array kCosine{1.0 * 2, 3.0 * 4, 5.0 * 6, 7.0 * 8, 9.0 * 10, 11.0 * 12, 13.0 * 14, 15.0 * 16};
   const double square = r * r;
   return {r * alternating_series(square, kSine), alternating_series(square, kCosine)};
 }
@@ -43,10 +42,14 @@ SinCos sin_cos(double angle) noexcept {
   const double quadrant = std::floor(x * kTwoOverPi + 0.5);
   const SinCos r = sin_cos_of_octant((x - quadrant * kHalfPiHigh) - quadrant * kHalfPiLow);
   switch (static_cast<long>(quadrant) & 3) {
-    case 0: return r;
-    case 1: return {r.cosine, -r.sine};
-    case 2: return {-r.sine, -r.cosine};
-    default: return {-r.cosine, r.sine};
+    case 0:
+      return r;
+    case 1:
+      return {r.cosine, -r.sine};
+    case 2:
+      return {-r.sine, -r.cosine};
+    default:
+      return {-r.cosine, r.sine};
   }
 }
 

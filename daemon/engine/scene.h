@@ -20,7 +20,7 @@ struct Object {
   std::shared_ptr<const CellComplex> cells;
   std::vector<Material> materials;  // by Cell::region
   Pose initial_pose;                // world_from_object at the start
-  bool dynamic = false;             // false: fixed in the world
+  bool dynamic = false;             // false, or without mass: fixed in the world
   BodyDynamics dynamics;            // used if dynamic
   double release_after = 0.0;       // s from tick 0 during which a dynamic object is still held where it is
 };

@@ -20,16 +20,27 @@ class World {
   /// One tick of dt seconds. Bodies first move on from the last instant under the wrenches found there; then
   /// every HIP is placed, its proxies are constrained in the objects' present poses, and forces are summed:
   /// so all of state() belongs to one instant. Tick 0 moves nothing and puts each proxy at its HIP, as for a
-  /// finger that appears later. `fingers` has one pose for each finger of the scene. With a clock,
-  /// transitions are timed. Real-time safe.
+  /// finger that appears later. A body under `release_after` is carried on from no instant before it.
+  ///
+  /// `fingers` has one pose for each finger of the scene. A pose that cannot be meant (see is_usable) counts
+  /// as an absent finger in this tick, so that no input poisons the state. An absent finger's HIPs stay where
+  /// they were last, hold nothing and feel nothing.
+  ///
+  /// With a clock, transitions are timed; those of proxies far outside an object are counted only. Real-time
+  /// safe.
   void step(std::span<const FingerPose> fingers, double dt, Clock clock = nullptr) noexcept;
 
   /// Back to the state before tick 0; counters too. Real-time safe.
   void reset() noexcept;
 
+  /// Goes on from a copied state. False, and nothing is changed, if it is not of this scene (by its sizes).
+  /// Real-time safe.
+  bool restore(const State& state) noexcept;
+
   const Scene& scene() const noexcept { return *scene_; }
   const State& state() const noexcept { return state_; }
   const TransitionTable& transitions() const noexcept { return transitions_; }
+  void clear_transitions() noexcept { transitions_ = TransitionTable{}; }
 
   /// Proxy (m, world) of one HIP in one object.
   glm::dvec3 proxy_in_world(std::size_t object, std::size_t hip) const noexcept;
@@ -37,12 +48,13 @@ class World {
  private:
   void move_bodies(double dt) noexcept;
   void place_hips(std::span<const FingerPose> fingers) noexcept;
-  void constrain_hips(std::span<const FingerPose> fingers, double dt, Clock clock) noexcept;
+  void constrain_hips(std::size_t object, double dt, Clock clock) noexcept;
   void sum_forces(std::span<const FingerPose> fingers) noexcept;
 
   std::shared_ptr<const Scene> scene_;
   State initial_;
   State state_;
+  std::vector<std::uint8_t> present_;  // fingers, in this tick
   TransitionTable transitions_;
 };
 

@@ -11,6 +11,10 @@ bool is_finite(const glm::dvec3& v) noexcept {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+bool is_finite(const glm::dquat& q) noexcept {
+  return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
+}
+
 double largest_component(const glm::dvec3& v) noexcept {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -63,8 +67,9 @@ void ForceGuard::latch_measured(FaultKind kind, const GuardInput& input, double 
 }
 
 bool ForceGuard::find_fault(const GuardInput& input) noexcept {
-  const bool finite = is_finite(input.position) && is_finite(input.velocity) && is_finite(input.force) &&
-                      is_finite(input.torque) && !std::isnan(input.sample_age);
+  const bool finite = is_finite(input.position) && is_finite(input.orientation) &&
+                      is_finite(input.velocity) && is_finite(input.force) && is_finite(input.torque) &&
+                      !std::isnan(input.sample_age);
   if (!finite) {
     latch_measured(FaultKind::kNotFinite, input, 0.0, 0.0);
   } else if (armed_ && input.present && length(input.velocity) > limits_.max_speed) {

@@ -11,6 +11,7 @@
 // stops giving, go to zero by the slew limit instead (10 ms at the defaults), so that the hand is not kicked.
 
 #include <cstdint>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "safety/fault.h"
@@ -35,6 +36,7 @@ struct GuardInput {
   bool present = false;      // there is a sample
   double sample_age = 0.0;   // s
   glm::dvec3 position{0.0};  // m
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   glm::dvec3 velocity{0.0};  // m/s
   glm::dvec3 force{0.0};     // N wanted
   glm::dvec3 torque{0.0};    // N m wanted

@@ -49,6 +49,9 @@ inline double crossing(double before, double after) noexcept {
   return from / (from - after);
 }
 
+/// One transition from whatever state the proxy is in.
+bool step(Tick& tick, Proxy& proxy) noexcept;
+
 /// Inside a cell: toward the HIP, or to the face through which that motion leaves (paper 2.2 (1)).
 bool step_tet(Tick& tick, Proxy& proxy) noexcept;
 /// On a face: into one of its cells, out of the hull, or along the face (paper 2.2 (2)).

@@ -201,6 +201,14 @@ TEST(ForceGuard, WhatIsNoNumberIsAFaultArmedOrNot) {
   }
 }
 
+TEST(ForceGuard, AnOrientationThatIsNoNumberIsAFault) {
+  ForceGuard guard = armed_guard(no_limits());
+  GuardInput input = input_with({2.0, 0.0, 0.0});
+  input.orientation.y = kNan;
+  expect_zero(guard.guard(input, kDt));
+  EXPECT_EQ(guard.fault().kind, FaultKind::kNotFinite);
+}
+
 TEST(ForceGuard, AFaultStaysUntilItIsClearedAndThenStaysDisarmed) {
   ForceGuard guard = armed_guard(no_limits());
   guard.guard(input_with({kNan, 0.0, 0.0}), kDt);

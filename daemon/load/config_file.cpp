@@ -1,0 +1,212 @@
+#include "load/config_file.h"
+
+#include <arpa/inet.h>
+#include <sys/un.h>
+
+#include <map>
+#include <utility>
+
+#include "load/path_file.h"
+#include "load/ranges.h"
+#include "load/read_file.h"
+
+namespace haptic::load {
+namespace {
+
+/// Fills one section after the other and checks it.
+class ConfigCheck {
+ public:
+  ConfigCheck(v1::DaemonConfig& config, const TextSource& source, const std::filesystem::path& file)
+      : config_(config), source_(source), file_(file) {}
+
+  std::vector<std::vector<drivers::PathPoint>> check() {
+    servo(*config_.mutable_servo());
+    capacity(*config_.mutable_capacity());
+    safety(*config_.mutable_safety());
+    listeners();
+    if (!config_.scene().empty()) config_.set_scene(relative_to(file_, config_.scene()).string());
+    return devices();
+  }
+
+ private:
+  // 0 is a field that was left away: proto3 cannot tell the two apart, and 0 is never a value of these
+  void number(const std::string& field, double value, double fallback, const Range& range, auto set) const {
+    if (value == 0.0) return set(fallback);
+    check_range(source_, field, value, range);
+  }
+  void count(const std::string& field, std::uint32_t value, std::uint32_t fallback, const Range& range,
+             auto set) const {
+    if (value == 0) return set(fallback);
+    check_range(source_, field, value, range);
+  }
+
+  void servo(v1::Servo& servo) const {
+    number("servo.rate_hz", servo.rate_hz(), 1000.0, {100.0, 8000.0, " Hz"},
+           [&](double v) { servo.set_rate_hz(v); });
+    count("servo.priority", servo.priority(), 80, {1, 99}, [&](std::uint32_t v) { servo.set_priority(v); });
+    if (servo.has_cpu()) check_range(source_, "servo.cpu", servo.cpu(), {0, 1023});
+  }
+
+  void capacity(v1::Capacity& capacity) const {
+    count("capacity.objects", capacity.objects(), 256, {1, 65536},
+          [&](std::uint32_t v) { capacity.set_objects(v); });
+    count("capacity.fingers", capacity.fingers(), 64, {1, 4096},
+          [&](std::uint32_t v) { capacity.set_fingers(v); });
+    count("capacity.hips", capacity.hips(), 16384, {1, 262144},
+          [&](std::uint32_t v) { capacity.set_hips(v); });
+  }
+
+  void safety(v1::Safety& safety) const {
+    number("safety.max_force", safety.max_force(), 5.0, {0.0, 1000.0, " N", true},
+           [&](double v) { safety.set_max_force(v); });
+    number("safety.max_force_rate", safety.max_force_rate(), 500.0, {0.0, 1e6, " N/s", true},
+           [&](double v) { safety.set_max_force_rate(v); });
+    number("safety.max_speed", safety.max_speed(), 2.0, {0.0, 100.0, " m/s", true},
+           [&](double v) { safety.set_max_speed(v); });
+    number("safety.arm_ramp", safety.arm_ramp(), 0.5, {0.0, 60.0, " s", true},
+           [&](double v) { safety.set_arm_ramp(v); });
+    number("safety.max_sample_age", safety.max_sample_age(), 0.02, {0.0, 10.0, " s", true},
+           [&](double v) { safety.set_max_sample_age(v); });
+    count("safety.max_missed_ticks", safety.max_missed_ticks(), 50, {1, 1000000},
+          [&](std::uint32_t v) { safety.set_max_missed_ticks(v); });
+  }
+
+  std::vector<std::vector<drivers::PathPoint>> devices() {
+    if (config_.device_size() > kMostDevices) {
+      source_.fail(item("device", kMostDevices),
+                   "is one device too many (permitted: 0 to " + std::to_string(kMostDevices) + ")");
+    }
+    std::map<std::string, int> names;
+    std::vector<std::vector<drivers::PathPoint>> paths;
+    for (int i = 0; i < config_.device_size(); ++i) {
+      const std::string field = item("device", i);
+      v1::Device& device = *config_.mutable_device(i);
+      if (device.name().empty()) source_.fail(field + ".name", "is missing: a device needs a name");
+      const auto [same, is_new] = names.emplace(device.name(), i);
+      if (!is_new) {
+        source_.fail(field + ".name",
+                     in_quotes(device.name()) + " is also the name of " + item("device", same->second));
+      }
+      paths.push_back(driver(field, device));
+    }
+    return paths;
+  }
+
+  std::vector<drivers::PathPoint> driver(const std::string& field, v1::Device& device) {
+    switch (device.driver_case()) {
+      case v1::Device::kSimulated:
+        return simulated(field + ".simulated", *device.mutable_simulated());
+      case v1::Device::kPlayback:
+        return path(field + ".playback.path", *device.mutable_playback()->mutable_path());
+      case v1::Device::DRIVER_NOT_SET:
+        break;
+    }
+    source_.fail(field, "has no driver (permitted: simulated, playback)");
+  }
+
+  std::vector<drivers::PathPoint> simulated(const std::string& field, v1::Device::Simulated& device) {
+    check_range(source_, field + ".mass", device.mass(), {0.0, 1e3, " kg", true});
+    check_range(source_, field + ".damping", device.damping(), {0.0, 1e6, " N s/m"});
+    if (!device.has_hand()) return {};
+    check_range(source_, field + ".hand.stiffness", device.hand().stiffness(), {0.0, 1e6, " N/m", true});
+    check_range(source_, field + ".hand.damping", device.hand().damping(), {0.0, 1e6, " N s/m"});
+    return path(field + ".hand.path", *device.mutable_hand()->mutable_path());
+  }
+
+  std::vector<drivers::PathPoint> path(const std::string& field, std::string& path) const {
+    if (path.empty()) source_.fail(field, "is missing: expected the name of a CSV file");
+    path = relative_to(file_, path).string();
+    try {
+      return read_path(path);
+    } catch (const LoadError& error) {
+      // a file that is wrong tells so itself; one that cannot be read is an error of the field
+      if (error.line() != 0) throw;
+      source_.fail(field, error.what());
+    }
+  }
+
+  void listeners() {
+    std::map<std::string, int> addresses;
+    for (int i = 0; i < config_.listen_size(); ++i) {
+      const std::string field = item("listen", i);
+      v1::Listen& listen = *config_.mutable_listen(i);
+      std::string address;
+      switch (listen.address_case()) {
+        case v1::Listen::kUnix:
+          address = unix_socket(field + ".unix", *listen.mutable_unix());
+          break;
+        case v1::Listen::kTcp:
+          address = tcp(field + ".tcp", listen.tcp());
+          break;
+        case v1::Listen::ADDRESS_NOT_SET:
+          source_.fail(field, "has no address (permitted: unix, tcp)");
+      }
+      const auto [same, is_new] = addresses.emplace(address, i);
+      if (!is_new) source_.fail(field, "has the same address as " + item("listen", same->second));
+    }
+  }
+
+  std::string unix_socket(const std::string& field, v1::Listen::Unix& listen) const {
+    if (listen.path().empty()) source_.fail(field + ".path", "is missing: expected the path of a socket");
+    listen.set_path(relative_to(file_, listen.path()).string());
+    constexpr std::size_t kLongest = sizeof(sockaddr_un::sun_path) - 1;
+    if (listen.path().size() > kLongest) {
+      source_.fail(field + ".path", "has " + std::to_string(listen.path().size()) +
+                                        " bytes (permitted: up to " + std::to_string(kLongest) + ")");
+    }
+    for (int i = 0; i < listen.allow_size(); ++i) {
+      const std::string allow = field + "." + item("allow", i);
+      if (listen.allow(i).group().empty()) {
+        source_.fail(allow + ".group", "is missing: expected the name of a group");
+      }
+      if (listen.allow(i).role() == v1::ROLE_UNSPECIFIED) {
+        source_.fail(allow + ".role", "is missing (permitted: OBSERVE, SCRIPT, DRIVE, ADMIN)");
+      }
+    }
+    return listen.path();
+  }
+
+  std::string tcp(const std::string& field, const v1::Listen::Tcp& listen) const {
+    in_addr four{};
+    in6_addr six{};
+    const bool is_four = ::inet_pton(AF_INET, listen.address().c_str(), &four) == 1;
+    const bool is_six = !is_four && ::inet_pton(AF_INET6, listen.address().c_str(), &six) == 1;
+    if (!is_four && !is_six) {
+      source_.fail(field + ".address",
+                   in_quotes(listen.address()) + " is not an IP address (permitted: 127.0.0.1, ::1)");
+    }
+    if (is_four ? (ntohl(four.s_addr) >> 24U) != 127 : !IN6_IS_ADDR_LOOPBACK(&six)) {
+      source_.fail(field + ".address", in_quotes(listen.address()) +
+                                           " can be reached from other machines; TCP without TLS is for this"
+                                           " one only (permitted: 127.0.0.1, ::1)");
+    }
+    check_range(source_, field + ".port", listen.port(), {1, 65535});
+    return listen.address() + " " + std::to_string(listen.port());
+  }
+
+  v1::DaemonConfig& config_;
+  const TextSource& source_;
+  const std::filesystem::path& file_;
+};
+
+}  // namespace
+
+LoadedConfig load_config(const std::filesystem::path& file) {
+  v1::DaemonConfig message;
+  const TextSource source = read_message(file, message);
+  return check_config(std::move(message), source, file);
+}
+
+LoadedConfig check_config(v1::DaemonConfig message, const TextSource& source,
+                          const std::filesystem::path& file) {
+  check_values(message, source);
+  LoadedConfig loaded{std::move(message), {}, source};
+  loaded.paths = ConfigCheck(loaded.message, source, file).check();
+  return loaded;
+}
+
+v1::Capacity default_capacity() {
+  return check_config(v1::DaemonConfig(), TextSource(), std::filesystem::path()).message.capacity();
+}
+
+}  // namespace haptic::load
