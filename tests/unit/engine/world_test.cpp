@@ -12,6 +12,7 @@
 
 #include "engine/portable_math.h"
 #include "engine/shapes.h"
+#include "tests/support/allocation_count.h"
 #include "tests/support/expect_vector.h"
 #include "tests/support/probe.h"
 
@@ -389,6 +390,19 @@ TEST(World, ResetsToTheStart) {
   EXPECT_EQ(world.transitions().count, TransitionTable{}.count);
   run(world, 0, 600);
   EXPECT_EQ(hash(world.state()), once);
+}
+
+TEST(World, StepsResetsAndRestoresWithoutTheHeap) {
+  World world = two_fingers_two_objects();
+  const State copy = world.state();
+  const std::uint64_t before = test::allocation_count();
+  ASSERT_GT(before, 0U);
+  run(world, 0, 600);
+  static_cast<void>(hash(world.state()));
+  world.reset();
+  world.restore(copy);
+  run(world, 0, 600);
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 TEST(World, TellsWhereAProxyIsInTheWorld) {
