@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "load_support.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {

@@ -1,6 +1,6 @@
 #include "load/config_file.h"
 
-#include "load_support.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {

@@ -8,8 +8,8 @@
 #include "load/mesh_file.h"
 #include "load/path_file.h"
 #include "load/scene_file.h"
-#include "load_support.h"
-#include "support/tetgen_pair.h"
+#include "tests/support/tetgen_pair.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {

@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "load_support.h"
-#include "support/tetgen_pair.h"
+#include "tests/support/tetgen_pair.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {
@@ -124,10 +124,10 @@ TEST(Gmsh, TellsWhichVersionItReads) {
 }
 
 TEST(Gmsh, TellsTheByteOfABinaryFile) {
-  // the tag 31 of the first tetrahedron is the last of its 40 bytes; the reader stands behind it
+  // blocks of 20 bytes and a point, a triangle and a tetrahedron; node 31 is the last, the reader stands behind
   const std::string bytes = content_of(kCorpus / "gmsh_fuzz/binary_node_unknown.msh");
   const std::size_t elements = bytes.find("$Elements\n") + 10;
-  const std::size_t behind = elements + 4 * 8 + (20 + 16) + (20 + 24) + (20 + 40);
+  const std::size_t behind = elements + 4 * 8 + (20 + 16) + (20 + 32) + (20 + 40);
   EXPECT_EQ(error_of([] { gmsh("binary_node_unknown.msh"); }).message(),
             "byte " + std::to_string(behind) + ": node 31 does not exist");
 }

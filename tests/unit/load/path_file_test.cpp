@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "load_support.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "load/config_file.h"
-#include "load_support.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {

@@ -6,7 +6,7 @@
 #include "load/config_file.h"
 #include "load/scene_file.h"
 #include "load/scene_report.h"
-#include "load_support.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {

@@ -1,7 +1,7 @@
 #include "load/text_message.h"
 
 #include "haptic/v1/scene.pb.h"
-#include "load_support.h"
+#include "tests/unit/load/load_support.h"
 
 namespace haptic::load {
 namespace {
@@ -54,9 +54,9 @@ TEST(TextMessage, FindsTheSameFieldsInJson) {
   EXPECT_EQ(place_of(kJson, "name", Syntax::kJson), "2:3");
   EXPECT_EQ(place_of(kJson, "object[0].name", Syntax::kJson), "3:15");
   EXPECT_EQ(place_of(kJson, "object[1]", Syntax::kJson), "4:5");
-  EXPECT_EQ(place_of(kJson, "object[1].shape.box.size.y", Syntax::kJson), "5:32");
+  EXPECT_EQ(place_of(kJson, "object[1].shape.box.size.y", Syntax::kJson), "5:33");
   EXPECT_EQ(place_of(kJson, "object[1].shape.box.size.z", Syntax::kJson), "5:16");
-  EXPECT_EQ(place_of(kJson, "object[1].air_margin", Syntax::kJson), "5:43");
+  EXPECT_EQ(place_of(kJson, "object[1].air_margin", Syntax::kJson), "5:44");
 }
 
 TEST(TextMessage, TellsAnUnknownField) {
