@@ -7,9 +7,9 @@
 //       /|`.         Plane i of a cell lies opposite its vertex i and looks inward:
 //      / |  `.           side_i(p) = normal_i . p - offset_i   (m, positive inside)
 //     /  |    `.
-//   v0---|----v2     A face is shared by two cells. Its plane is stored once, positive toward
-//     `. |   .'      cells[0]; each cell's record holds it or its exact negative, so that the
-//       `|.'         two cells can never disagree about a side.
+//   v0---|----v2     A face is shared by two cells. Its plane is stored once, positive toward cells[0],
+//     `. |   .'      and each cell's record holds it, or its exact negative: the two cells can never
+//       `|.'         disagree about a side.
 //        v1
 //
 // The records are laid out for the order in which a tick asks: a cell alone answers "am I still inside" (its
@@ -149,8 +149,8 @@ class CellComplex {
   /// The length below which two points are one (m): kLengthTolerance times the extent.
   double tolerance() const noexcept { return tolerance_; }
 
-  /// The lowest cell that holds p, within the tolerance; kNone if none does. Real-time safe: visits a bounded
-  /// number of tree nodes.
+  /// The lowest cell that holds p, to within tolerance(); kNone if none does. Real-time safe: visits a
+  /// bounded number of tree nodes.
   Index locate(const glm::dvec3& p) const noexcept {
     return locate_if(p, [](Index) { return true; });
   }

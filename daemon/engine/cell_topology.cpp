@@ -1,9 +1,9 @@
 #include "engine/cell_topology.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "engine/mesh_check.h"
+#include "engine/message.h"
 
 namespace haptic::engine {
 namespace {
@@ -60,11 +60,11 @@ class FirstMisfit {
       throw MeshError(describe_cell(mesh_, cell_) + " is a duplicate of " + describe_cell(mesh_, other_),
                       cell_);
     }
-    std::ostringstream what;
-    what << describe_cell(mesh_, cell_) << " overlaps " << describe_cell(mesh_, other_)
-         << ": both lie on the same side of face " << face_[0] << ", " << face_[1] << ", " << face_[2];
-    if (owners_ > 2) what << ", which has " << owners_ << " owners";
-    throw MeshError(what.str(), cell_);
+    const std::string owners = owners_ > 2 ? message(", which has ", owners_, " owners") : "";
+    throw MeshError(
+        message(describe_cell(mesh_, cell_), " overlaps ", describe_cell(mesh_, other_),
+                ": both lie on the same side of face ", face_[0], ", ", face_[1], ", ", face_[2], owners),
+        cell_);
   }
 
  private:

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <sstream>
 
 #include "engine/constants.h"
+#include "engine/message.h"
 
 namespace haptic::engine {
 namespace {
@@ -14,9 +14,7 @@ bool is_finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite
 
 template <class... Parts>
 [[noreturn]] void refuse(Index cell, const Parts&... parts) {
-  std::ostringstream what;
-  (what << ... << parts);
-  throw MeshError(what.str(), cell);
+  throw MeshError(message(parts...), cell);
 }
 
 void check_sizes(const TetraMesh& mesh) {
@@ -79,10 +77,8 @@ std::vector<GridVertex> sort_into_grid(const TetraMesh& mesh, const Box& bounds,
 }  // namespace
 
 std::string describe_cell(const TetraMesh& mesh, Index cell) {
-  std::ostringstream text;
   const auto& v = mesh.cells[cell];
-  text << "cell " << cell << " (vertices " << v[0] << ", " << v[1] << ", " << v[2] << ", " << v[3] << ")";
-  return text.str();
+  return message("cell ", cell, " (vertices ", v[0], ", ", v[1], ", ", v[2], ", ", v[3], ")");
 }
 
 Box check_tables(const TetraMesh& mesh) {

@@ -76,7 +76,9 @@ QUIET_FORBIDDEN_WORDS = re.compile(
 )
 
 # Files of the engine that only run before a scene is handed to the servo thread: they may throw, and compose words.
-BUILD_TIME = frozenset("body box_tree cell_complex cell_topology finger mesh_check scene shapes".split())
+BUILD_TIME = frozenset(
+    "body box_tree cell_complex cell_topology finger mesh_check scene shapes extrusion icosphere polygon".split()
+)
 BUILD_TIME_HEADERS = frozenset("sstream unordered_map".split())
 
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")

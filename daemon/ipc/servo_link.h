@@ -1,0 +1,52 @@
+#pragma once
+// The io thread's end of the command and event queues: commands go in, answers come back by request number.
+// Frees scenes that the servo thread no longer uses. io thread.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+
+#include "servo/mailbox.h"
+
+namespace haptic::ipc {
+
+using SteadyClock = std::chrono::steady_clock;
+
+enum class Outcome { kDone, kNothingToDo, kFaultRefused, kNoAnswer };
+
+class ServoLink {
+ public:
+  using OnAnswer = std::function<void(Outcome)>;
+  using OnEvent = std::function<void(const servo::Event&)>;
+
+  /// `on_event` sees every event but kSceneRetired, answers too, and before the one who asked does.
+  ServoLink(servo::Mailbox& mailbox, std::chrono::milliseconds patience, OnEvent on_event);
+  /// Frees what waits in the event queue.
+  ~ServoLink();
+  ServoLink(const ServoLink&) = delete;
+  ServoLink& operator=(const ServoLink&) = delete;
+
+  /// Sends a command; its request number is chosen here. False if the queue is full, and then nothing was
+  /// sent. Without an answer in time, `on_answer` gets kNoAnswer.
+  bool submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer);
+
+  /// Takes what the servo thread has sent. To be called every few milliseconds.
+  void poll(SteadyClock::time_point now);
+
+ private:
+  struct Pending {
+    SteadyClock::time_point deadline;
+    OnAnswer on_answer;
+  };
+
+  void take(const servo::Event& event);
+
+  servo::Mailbox& mailbox_;
+  std::chrono::milliseconds patience_;
+  OnEvent on_event_;
+  std::uint64_t last_request_ = 0;
+  std::map<std::uint64_t, Pending> pending_;  // by request; deadlines ascend with it
+};
+
+}  // namespace haptic::ipc
