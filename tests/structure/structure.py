@@ -77,7 +77,8 @@ QUIET_FORBIDDEN_WORDS = re.compile(
 
 # Files of the engine that only run before a scene is handed to the servo thread: they may throw, and compose words.
 BUILD_TIME = frozenset(
-    "body box_tree cell_complex cell_topology finger mesh_check scene shapes extrusion icosphere polygon".split()
+    "body box_tree cell_builder cell_complex cell_topology delaunay extrusion finger icosphere mesh_check polygon "
+    "scene shapes".split()
 )
 BUILD_TIME_HEADERS = frozenset("sstream unordered_map".split())
 

@@ -12,6 +12,7 @@
 
 #include "engine/portable_math.h"
 #include "engine/shapes.h"
+#include "tests/support/allocation_count.h"
 #include "tests/support/expect_vector.h"
 #include "tests/support/probe.h"
 
@@ -27,19 +28,20 @@ constexpr double kDt = 1e-3;
 constexpr double kStiffness = 100.0;  // N/m
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A box of `solid` in 20 mm of air.
-Object box(const dvec3& size, const Material& solid, bool dynamic) {
+/// A cube of 40 mm in 20 mm of air around the world's origin, 64 g if it is of test::rigid. `shift` is where
+/// it stands in its own frame.
+Object cube(const Material& solid, bool dynamic, const Pose& shift = {}) {
+  TetraMesh mesh = box_mesh({0.04, 0.04, 0.04}, 0.02);
+  for (dvec3& vertex : mesh.vertices) vertex = shift * vertex;
   Object object;
-  object.name = "box";
-  object.cells = std::make_shared<CellComplex>(CellComplex::build(box_mesh(size, 0.02)));
+  object.name = "cube";
+  object.cells = std::make_shared<CellComplex>(CellComplex::build(mesh));
   object.materials = {air(), solid};
+  object.initial_pose = inverse(shift);
   object.dynamic = dynamic;
   if (dynamic) object.dynamics.mass = mass_properties(*object.cells, object.materials);
   return object;
 }
-
-/// A cube of 40 mm: 64 g if it is of test::rigid.
-Object cube(const Material& solid, bool dynamic) { return box({0.04, 0.04, 0.04}, solid, dynamic); }
 
 Finger finger_of(const std::vector<dvec3>& hips) { return {"finger", "device", kStiffness, hips, 0}; }
 
@@ -95,8 +97,10 @@ TEST(World, StillHipIsMetByAMovingObject) {
 }
 
 TEST(World, GivesTheBodyTheImpulseThatTheHandGets) {
+  // with the centre of gravity off the origin of the object's frame
+  const Pose shift{{0.01, -0.02, 0.03}, rotation_by({0.4, 0.5, -0.6})};
   World world =
-      world_of({cube(rigid(0.8, 0.5), true)}, {finger_of(fingertip_layout(0.006, 1.0, 7, {1, 0, 0}))});
+      world_of({cube(rigid(0.8, 0.5), true, shift)}, {finger_of(fingertip_layout(0.006, 1.0, 7, {1, 0, 0}))});
   const BodyDynamics& body = world.scene().objects[0].dynamics;
   dvec3 impulse{0.0};
   dvec3 angular_impulse{0.0};
@@ -389,6 +393,19 @@ TEST(World, ResetsToTheStart) {
   EXPECT_EQ(world.transitions().count, TransitionTable{}.count);
   run(world, 0, 600);
   EXPECT_EQ(hash(world.state()), once);
+}
+
+TEST(World, StepsResetsAndRestoresWithoutTheHeap) {
+  World world = two_fingers_two_objects();
+  const State copy = world.state();
+  const std::uint64_t before = test::allocation_count();
+  ASSERT_GT(before, 0U);
+  run(world, 0, 600);
+  static_cast<void>(hash(world.state()));
+  world.reset();
+  world.restore(copy);
+  run(world, 0, 600);
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 TEST(World, TellsWhereAProxyIsInTheWorld) {
