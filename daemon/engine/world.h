@@ -40,6 +40,7 @@ class World {
   const Scene& scene() const noexcept { return *scene_; }
   const State& state() const noexcept { return state_; }
   const TransitionTable& transitions() const noexcept { return transitions_; }
+  void clear_transitions() noexcept { transitions_ = TransitionTable{}; }
 
   /// Proxy (m, world) of one HIP in one object.
   glm::dvec3 proxy_in_world(std::size_t object, std::size_t hip) const noexcept;

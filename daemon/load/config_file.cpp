@@ -13,10 +13,6 @@
 namespace haptic::load {
 namespace {
 
-std::string item(const char* list, int index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
-
 /// Fills one section after the other and checks it.
 class ConfigCheck {
  public:

@@ -145,7 +145,7 @@ class ValueCheck {
       }
       const int size = reflection.FieldSize(message, field);
       for (int i = 0; i < size; ++i) {
-        value(message, reflection, field, i, name + "[" + std::to_string(i) + "]");
+        value(message, reflection, field, i, item(name, i));
       }
     }
   }

@@ -50,6 +50,11 @@ TextSource read_message(const std::filesystem::path& file, google::protobuf::Mes
 TextSource parse_message(std::string text, const std::string& file, Syntax syntax,
                          google::protobuf::Message& message);
 
+/// An item of a list as field paths write it: "object[2]".
+inline std::string item(const std::string& list, int index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
 /// Refuses what no message of ours may hold in any field: a number that is not finite, an enumerator that
 /// does not exist, text that is not UTF-8, has control characters or is very long.
 void check_values(const google::protobuf::Message& message, const TextSource& source);

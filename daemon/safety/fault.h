@@ -14,6 +14,12 @@ enum class FaultKind : std::uint8_t {
   kMissedTicks,  // value and limit in ticks
 };
 
+/// In lower case, e.g. "over_speed"; "none" for no fault.
+constexpr const char* name_of(FaultKind kind) noexcept {
+  constexpr const char* kNames[] = {"none", "not_finite", "over_speed", "stale_sample", "missed_ticks"};
+  return kNames[static_cast<int>(kind)];
+}
+
 inline constexpr std::uint32_t kNoDevice = 0xffffffff;
 
 struct Fault {

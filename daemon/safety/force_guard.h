@@ -5,9 +5,13 @@
 //
 //   wanted force -> finite? -> ramp after arming -> magnitude -> slew -> device
 //                    | no, or over-speed, stale sample, missed ticks
-//                    +-> zero, and a latched named fault
+//                    +-> zero in this very tick, and a latched named fault
+//
+// A fault cuts: nothing is known any more of what the force should be. Disarming, and a force that the engine
+// stops giving, go to zero by the slew limit instead (10 ms at the defaults), so that the hand is not kicked.
 
 #include <cstdint>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "safety/fault.h"
@@ -32,9 +36,10 @@ struct GuardInput {
   bool present = false;      // there is a sample
   double sample_age = 0.0;   // s
   glm::dvec3 position{0.0};  // m
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   glm::dvec3 velocity{0.0};  // m/s
   glm::dvec3 force{0.0};     // N wanted
-  glm::dvec3 torque{0.0};    // N m wanted; scaled as the force is
+  glm::dvec3 torque{0.0};    // N m wanted
 };
 
 struct GuardOutput {
@@ -52,7 +57,10 @@ class ForceGuard {
   bool arm() noexcept;
   /// Armed and fully ramped at once: for `simulate`, where no hand is near.
   void arm_at_once() noexcept;
+  /// Wants no force from now on; what there is goes down by the slew limit.
   void disarm() noexcept;
+  /// Ramps up again from none, as after arm(). For when another scene takes over.
+  void restart_ramp() noexcept { ramp_ = 0.0; }
   bool armed() const noexcept { return armed_; }
 
   /// Latches a fault from outside (missed ticks, another device). The first one is kept.
@@ -61,14 +69,20 @@ class ForceGuard {
   void clear() noexcept;
   const Fault& fault() const noexcept { return fault_; }
 
-  /// The force for this tick of `dt` seconds.
+  /// The force for this tick of `dt` seconds. A pose or a force that is no number is a fault at any time;
+  /// over-speed and a stale sample are while armed, when force could flow. Without a sample the force is
+  /// zero, and ramps up again once there is one. Force and torque are scaled together.
   GuardOutput guard(const GuardInput& input, double dt) noexcept;
 
  private:
+  bool find_fault(const GuardInput& input) noexcept;
+  void latch_measured(FaultKind kind, const GuardInput& input, double value, double limit) noexcept;
+
   GuardLimits limits_;
   bool armed_ = false;
-  double ramp_ = 0.0;  // 0 to 1
-  glm::dvec3 last_force_{0.0};
+  double ramp_ = 0.0;            // 0 to 1
+  glm::dvec3 last_force_{0.0};   // N, of the tick before
+  glm::dvec3 last_torque_{0.0};  // N m
   Fault fault_;
 };
 

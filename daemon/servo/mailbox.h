@@ -1,6 +1,7 @@
 #pragma once
 // Every crossing between the servo thread and the rest of the daemon. All queues are single-producer
-// single-consumer, all memory is reserved in the constructor, and nothing here waits.
+// single-consumer, all memory is reserved in the constructor, and nothing here waits. A Mailbox is large: it
+// belongs on the heap.
 //
 //     io thread  -- Command -->  servo thread        bounded; a full queue refuses the request
 //     io thread  <-- Event ---   servo thread        answers, faults, memory to free; a lost event is counted
@@ -36,7 +37,7 @@ enum class CommandKind : std::uint8_t {
   kDisarm,
   kPause,
   kResume,
-  kStep,   // `ticks` while paused
+  kStep,   // `ticks` (0: one) while paused; answered when they have run
   kReset,  // the scene to its state before tick 0
   kClearFault,
   kSwapScene,  // `scene` becomes the one that runs; the old one comes back in kSceneRetired
@@ -47,7 +48,7 @@ struct Command {
   CommandKind kind = CommandKind::kDisarm;
   std::uint64_t request = 0;       // echoed in the answer
   std::uint64_t ticks = 0;         // kStep
-  PreparedScene* scene = nullptr;  // kSwapScene; owned by whoever holds the command
+  PreparedScene* scene = nullptr;  // kSwapScene: never null; owned by whoever holds the command
 };
 
 enum class EventKind : std::uint8_t {
@@ -65,7 +66,7 @@ struct Event {
   std::uint64_t request = 0;
   std::uint64_t tick = 0;
   std::uint64_t count = 0;
-  safety::Fault fault;
+  safety::Fault fault{};  // the latched one, if any
   PreparedScene* scene = nullptr;
 };
 
@@ -127,11 +128,16 @@ struct Capacity {
   std::size_t objects = 256;
   std::size_t fingers = 64;
   std::size_t hips = 16384;
+  std::size_t contacts = 16384;
   std::size_t devices = 16;
 };
 
 /// Snapshots from the servo thread to the io thread in the order of ticks. When the reader is too slow the
 /// writer takes back the oldest one that was not read, and counts it. Wait-free on both sides.
+///
+/// Buffer n goes to slot n % kSlots by an atomic exchange. What comes out of the slot is the writer's again:
+/// a buffer that was never read, or nothing, and then one lies in `returned_`. Between slots, reader and
+/// writer there are kSlots + 2 buffers, so that one is always left.
 class SnapshotRing {
  public:
   static constexpr std::size_t kSlots = 64;
@@ -148,11 +154,15 @@ class SnapshotRing {
   std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:
-  std::vector<Snapshot> buffers_;
-  std::array<std::atomic<Snapshot*>, kSlots> slots_;
-  boost::lockfree::spsc_queue<Snapshot*, boost::lockfree::capacity<kSlots + 2>> returned_;
-  Snapshot* spare_ = nullptr;  // servo thread's
-  Snapshot* taken_ = nullptr;  // io thread's
+  struct Buffer : Snapshot {
+    std::uint64_t number = 0;  // of its publication
+  };
+
+  std::vector<Buffer> buffers_;
+  std::array<std::atomic<Buffer*>, kSlots> slots_{};
+  boost::lockfree::spsc_queue<Buffer*, boost::lockfree::capacity<kSlots + 2>> returned_;
+  Buffer* spare_ = nullptr;  // servo thread's
+  Buffer* taken_ = nullptr;  // io thread's
   std::atomic<std::uint64_t> published_{0};
   std::uint64_t next_read_ = 0;  // io thread's
   std::atomic<std::uint64_t> lost_{0};
@@ -162,17 +172,20 @@ class SnapshotRing {
 enum class Stage : std::uint8_t { kCommands, kRead, kStep, kGuard, kWrite, kPublish, kTick };
 inline constexpr std::size_t kStages = 7;
 
+/// Since the start or the last kResetStats.
 struct LoopStats {
   std::uint64_t tick = 0;
   std::uint64_t missed_ticks = 0;
   std::uint64_t lost_events = 0;
-  rt::LatencyHistogram wakeup;
-  std::array<rt::LatencyHistogram, kStages> stages;
-  engine::TransitionTable transitions;
+  rt::LatencyHistogram wakeup;                       // lateness
+  std::array<rt::LatencyHistogram, kStages> stages;  // kTick: the whole; nothing without a clock
+  engine::TransitionTable transitions;               // of the running scene since it started or was reset
 };
 
 struct Mailbox {
   explicit Mailbox(const Capacity& capacity) : snapshots(capacity) {}
+  /// Frees the scenes that are still in the queues. After both threads have ended.
+  ~Mailbox();
 
   boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<256>> commands;
   boost::lockfree::spsc_queue<Event, boost::lockfree::capacity<1024>> events;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "engine/constraint.h"
 #include "safety/force_guard.h"
 #include "servo/mailbox.h"
 
@@ -24,9 +25,9 @@ struct Instant {
 struct ServoSettings {
   double rate_hz = 1000.0;
   safety::GuardLimits limits;
-  std::uint32_t max_missed_ticks = 50;
-  bool armed_from_start = false;  // only `simulate`, where no hand is near
-  engine::Clock clock = nullptr;  // for stage and transition times; none: nothing is timed
+  std::uint32_t max_missed_ticks = 50;  // in a row, while armed
+  bool armed_from_start = false;        // only `simulate`, where no hand is near
+  engine::Clock clock = nullptr;        // for stage and transition times; none: nothing is timed
 };
 
 class ServoLoop {
@@ -36,11 +37,83 @@ class ServoLoop {
             std::unique_ptr<PreparedScene> scene, Mailbox& mailbox);
   ~ServoLoop();
 
+  ServoLoop(const ServoLoop&) = delete;
+  ServoLoop& operator=(const ServoLoop&) = delete;
+
   /// One tick. Real-time safe.
   void tick(const Instant& now) noexcept;
 
-  /// For the owner of the thread that ticks: the scene that runs now.
+  // For the owner of the thread that ticks, between ticks.
+
+  /// The scene that runs now.
   const PreparedScene& scene() const noexcept { return *scene_; }
+  /// Wants no force from now on, as the command does. Real-time safe.
+  void disarm() noexcept;
+  /// No device was given any force in the last tick.
+  bool is_at_rest() const noexcept;
+  /// The latched fault, if any.
+  const safety::Fault& fault() const noexcept { return fault_; }
+
+ private:
+  /// A device with what this tick knows of it.
+  struct Channel {
+    drivers::Device* device;
+    safety::ForceGuard guard;
+    drivers::DeviceSample sample{};
+    bool sampled = false;     // there was a sample at some time
+    bool fresh = false;       // and it is not too old
+    bool was_fresh = false;   // in the tick before
+    double sample_age = 0.0;  // s
+    engine::Wrench wanted{};  // by the engine, on the user, world
+    safety::GuardOutput let_through{};
+  };
+
+  void receive_commands(const Instant& now) noexcept;
+  void read_devices(const Instant& now) noexcept;
+  void place_fingers() noexcept;
+  void step_world() noexcept;
+  void guard_forces(const Instant& now) noexcept;
+  void write_devices(const Instant& now) noexcept;
+  void publish(const Instant& now) noexcept;
+
+  void obey(const Command& command, const Instant& now) noexcept;
+  EventKind arm() noexcept;
+  EventKind resume(const Instant& now) noexcept;
+  EventKind clear_fault() noexcept;
+  void swap_scene(PreparedScene* scene, const Instant& now) noexcept;
+  void restart_ramps() noexcept;
+  void begin_step(const Command& command) noexcept;
+  void finish_step(const Instant& now) noexcept;
+  void answer_step(const Instant& now) noexcept;
+
+  void want_forces() noexcept;
+  void latch(const safety::Fault& fault, const Instant& now) noexcept;
+  void send(Event event, const Instant& now) noexcept;
+
+  void count_misses(const Instant& now) noexcept;
+  void fill(Snapshot& snapshot, const Instant& now) const noexcept;
+  void publish_stats(const Instant& now) noexcept;
+  void finish_stage(Stage stage) noexcept;
+
+  ServoSettings settings_;
+  double dt_;
+  drivers::Nanoseconds force_lifetime_;
+  std::vector<Channel> channels_;
+  std::unique_ptr<PreparedScene> scene_;
+  Mailbox& mailbox_;
+
+  bool armed_ = false;
+  bool paused_ = false;
+  std::uint64_t steps_left_ = 0;  // while paused
+  bool step_unanswered_ = false;
+  std::uint64_t step_request_ = 0;  // to be answered when none is left
+  safety::Fault fault_;
+
+  std::uint64_t ticks_run_ = 0;
+  std::uint64_t missed_ticks_ = 0;
+  LoopStats stats_;
+  std::uint64_t tick_started_ns_ = 0;
+  std::uint64_t stage_started_ns_ = 0;
 };
 
 }  // namespace haptic::servo

@@ -1,0 +1,40 @@
+#pragma once
+// What one run of hapticctl is: the options that every verb has, the verb that was chosen, and how it speaks.
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "client/cli/exit_code.h"
+#include "client/lib/connection.h"
+
+namespace haptic::cli {
+
+struct Command;
+using Action = std::function<ExitCode(Command&)>;
+
+struct Command {
+  std::string address;  // --socket
+  bool json = false;    // --json
+  Action action;        // of the verb that was chosen
+
+  /// `patience`: for connecting, and for each answer. Throws client::Error.
+  client::Connection connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
+};
+
+/// Adds a verb that runs `action`. It has --json and --socket as hapticctl itself does, so that they may
+/// stand on either side of the verb.
+CLI::App* add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
+                   Action action);
+
+/// Adds --json and --socket.
+void add_common_options(CLI::App& app, Command& command);
+
+/// One line of JSON with the schema's field names; fields that are zero are told, too.
+void print_json(const google::protobuf::Message& message);
+
+/// Sends an empty request of the chosen call and returns the response.
+v1::Response call(client::Connection& daemon, const std::function<void(v1::Request&)>& fill);
+
+}  // namespace haptic::cli

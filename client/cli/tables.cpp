@@ -1,0 +1,202 @@
+#include "client/cli/tables.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "client/cli/describe.h"
+#include "client/cli/table.h"
+
+namespace haptic::cli {
+namespace {
+
+// item i of a packed array of triples; zero where the frame is shorter
+struct Triple {
+  double x = 0.0, y = 0.0, z = 0.0;
+  double length() const { return std::sqrt(x * x + y * y + z * z); }
+};
+
+template <class Array>
+Triple triple(const Array& values, int i) {
+  if (3 * i + 2 >= values.size()) {
+    return {};
+  }
+  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+
+template <class Array>
+auto item(const Array& values, int i) {
+  return i < values.size() ? values[i] : typename Array::value_type{};
+}
+
+std::string name_at(const std::vector<std::string>& names, std::size_t i) {
+  return i < names.size() ? names[i] : fmt::format("#{}", i);
+}
+
+std::string newtons(double force) { return fmt::format("{:.3f}", force); }
+std::string signed_newtons(double force) {
+  return fmt::format("{:+.3f}", std::round(force * 1e3) / 1e3 + 0.0);
+}
+
+// what the quaternion turns by, and about what
+std::string turn(const google::protobuf::RepeatedField<double>& values, int i) {
+  if (4 * i + 3 >= values.size()) {
+    return "-";
+  }
+  const Triple axis{values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
+  const double sine = axis.length();
+  const double angle = 2.0 * std::atan2(sine, std::abs(values[4 * i])) * 180.0 / M_PI;
+  if (angle < 0.05) {
+    return "0.0";
+  }
+  const double sign = values[4 * i] < 0.0 ? -1.0 : 1.0;
+  return fmt::format("{:.1f} about {:+.2f} {:+.2f} {:+.2f}", angle, sign * axis.x / sine,
+                     sign * axis.y / sine, sign * axis.z / sine);
+}
+
+// whether material acts on the HIP there; in free cells it is held by nothing but the cell itself
+bool is_contact(const v1::HipsFrame& hips, int i) {
+  const auto state = hips.contact_state(i);
+  return state == v1::SUR || state == v1::EDG || state == v1::VER ||
+         triple(hips.contact_force(), i).length() > 0.0;
+}
+
+}  // namespace
+
+Names names_of(const v1::SceneDescription& scene, const v1::DeviceList& devices) {
+  Names names;
+  names.scene_revision = scene.revision();
+  for (const auto& object : scene.object()) {
+    names.objects.push_back(object.name());
+  }
+  names.fingers.assign(scene.finger().begin(), scene.finger().end());
+  for (const auto& device : devices.device()) {
+    names.devices.push_back(device.description().name());
+  }
+  return names;
+}
+
+std::vector<FingerSummary> summarise_fingers(const Names& names, const v1::HipsFrame& hips) {
+  const auto hip_count = static_cast<std::size_t>(hips.position_size() / 3);
+  std::vector<bool> touches(hip_count, false);
+  std::vector<bool> slips(hip_count, false);
+  for (int i = 0; i < hips.contact_state_size(); ++i) {
+    const std::size_t hip = item(hips.contact_hip(), i);
+    if (hip < hip_count && is_contact(hips, i)) {
+      touches[hip] = true;
+      slips[hip] = slips[hip] || item(hips.contact_slipping(), i);
+    }
+  }
+  std::vector<FingerSummary> summaries;
+  for (const auto& finger : names.fingers) {
+    FingerSummary& summary = summaries.emplace_back();
+    summary.name = finger.name();
+    summary.device = finger.device();
+    summary.hips = finger.hips();
+    for (std::size_t hip = finger.first_hip(); hip < hip_count && hip - finger.first_hip() < finger.hips();
+         ++hip) {
+      summary.contacts += touches[hip] ? 1U : 0U;
+      summary.slipping += slips[hip] ? 1U : 0U;
+      const Triple force = triple(hips.force(), static_cast<int>(hip));
+      summary.force[0] += force.x;
+      summary.force[1] += force.y;
+      summary.force[2] += force.z;
+    }
+  }
+  return summaries;
+}
+
+std::string objects_table(const Names& names, const v1::ObjectsFrame& objects) {
+  Table table({{"object", Align::kLeft},
+               {"x mm"},
+               {"y mm"},
+               {"z mm"},
+               {"turn deg", Align::kLeft},
+               {"speed mm/s"},
+               {"by fingers N"}});
+  for (int i = 0; i < objects.position_size() / 3; ++i) {
+    const Triple at = triple(objects.position(), i);
+    table.add({name_at(names.objects, static_cast<std::size_t>(i)), millimetres(at.x), millimetres(at.y),
+               millimetres(at.z), turn(objects.orientation(), i),
+               fmt::format("{:.1f}", triple(objects.velocity(), i).length() * 1e3),
+               newtons(triple(objects.force(), i).length())});
+  }
+  return table.empty() ? "" : table.to_string();
+}
+
+std::string devices_table(const Names& names, const v1::DevicesFrame& devices) {
+  Table table({{"device", Align::kLeft},
+               {"x mm"},
+               {"y mm"},
+               {"z mm"},
+               {"speed mm/s"},
+               {"force N"},
+               {"age ms"},
+               {"buttons"},
+               {"state", Align::kLeft}});
+  for (int i = 0; i < devices.present_size(); ++i) {
+    const Triple at = triple(devices.position(), i);
+    const auto fault = static_cast<v1::FaultKind>(item(devices.fault(), i));
+    std::string state = devices.present(i) ? "present" : "absent";
+    if (fault != v1::FAULT_NONE) {
+      state = "FAULT " + describe(fault);
+    }
+    table.add({name_at(names.devices, static_cast<std::size_t>(i)), millimetres(at.x), millimetres(at.y),
+               millimetres(at.z), fmt::format("{:.1f}", triple(devices.velocity(), i).length() * 1e3),
+               newtons(triple(devices.force(), i).length()),
+               fmt::format("{:.1f}", item(devices.sample_age(), i) * 1e3),
+               fmt::format("{:b}", item(devices.buttons(), i)), state});
+  }
+  return table.empty() ? "" : table.to_string();
+}
+
+std::string fingers_table(const Names& names, const v1::HipsFrame& hips) {
+  Table table({{"finger", Align::kLeft},
+               {"device", Align::kLeft},
+               {"HIPs"},
+               {"in contact"},
+               {"slipping"},
+               {"force N"},
+               {"x N"},
+               {"y N"},
+               {"z N"}});
+  for (const FingerSummary& finger : summarise_fingers(names, hips)) {
+    const Triple force{finger.force[0], finger.force[1], finger.force[2]};
+    table.add({finger.name, finger.device, fmt::format("{}", finger.hips), fmt::format("{}", finger.contacts),
+               fmt::format("{}", finger.slipping), newtons(force.length()), signed_newtons(force.x),
+               signed_newtons(force.y), signed_newtons(force.z)});
+  }
+  return table.empty() ? "" : table.to_string();
+}
+
+std::string hips_table(const Names& names, const v1::HipsFrame& hips) {
+  Table table({{"HIP"},
+               {"finger", Align::kLeft},
+               {"object", Align::kLeft},
+               {"state", Align::kLeft},
+               {"slips", Align::kLeft},
+               {"proxy x mm"},
+               {"y mm"},
+               {"z mm"},
+               {"force N"}});
+  for (int i = 0; i < hips.contact_state_size(); ++i) {
+    if (!is_contact(hips, i)) {
+      continue;
+    }
+    const std::uint32_t hip = item(hips.contact_hip(), i);
+    std::string finger_name = "-";
+    for (const auto& finger : names.fingers) {
+      if (hip >= finger.first_hip() && hip - finger.first_hip() < finger.hips()) {
+        finger_name = finger.name();
+      }
+    }
+    const Triple proxy = triple(hips.contact_proxy(), i);
+    table.add({fmt::format("{}", hip), finger_name, name_at(names.objects, item(hips.contact_object(), i)),
+               name_of(hips.contact_state(i)), item(hips.contact_slipping(), i) ? "slips" : "",
+               millimetres(proxy.x), millimetres(proxy.y), millimetres(proxy.z),
+               newtons(triple(hips.contact_force(), i).length())});
+  }
+  return table.empty() ? "" : table.to_string();
+}
+
+}  // namespace haptic::cli

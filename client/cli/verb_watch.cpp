@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "client/cli/describe.h"
+#include "client/cli/look.h"
+#include "client/cli/screen.h"
+#include "client/cli/verbs.h"
+
+namespace haptic::cli {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+struct WatchOptions {
+  std::vector<v1::Topic> topics;
+  double rate = 0.0;     // Hz; 0: 20 on a terminal, 1 in lines, each tick in JSON
+  double seconds = 0.0;  // 0: until stopped
+  std::uint64_t count = 0;
+  bool hips = false;
+};
+
+// what has come in, beside the newest frame
+struct Progress {
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+  std::string last_event;
+};
+
+class Watch {
+ public:
+  Watch(Command& command, const WatchOptions& options)
+      : json_(command.json), options_(options), daemon_(command.connect()) {}
+
+  ExitCode run() {
+    catch_stop_signals();
+    const bool live = !json_ && is_terminal();
+    subscribe(live);
+    if (live) {
+      screen_.emplace();
+    }
+    const auto start = SteadyClock::now();
+    while (!stop_requested() && !enough(start)) {
+      if (const auto message = daemon_.receive(std::chrono::milliseconds(100))) {
+        take(*message);
+      }
+    }
+    return kDone;
+  }
+
+ private:
+  void subscribe(bool live) {
+    const v1::Response response = call(daemon_, [](v1::Request& request) { request.mutable_get_status(); });
+    rate_hz_ = response.status().rate_hz();
+    const double wanted = options_.rate > 0.0 ? options_.rate : json_ ? rate_hz_ : live ? 20.0 : 1.0;
+    const auto decimation = static_cast<std::uint32_t>(std::max(1.0, std::round(rate_hz_ / wanted)));
+    daemon_.subscribe(options_.topics, decimation);
+    if (!json_) {
+      names_ = ask_names(daemon_);
+    }
+  }
+
+  bool enough(SteadyClock::time_point start) const {
+    if (options_.count > 0 && progress_.frames >= options_.count) {
+      return true;
+    }
+    return options_.seconds > 0.0 &&
+           std::chrono::duration<double>(SteadyClock::now() - start).count() >= options_.seconds;
+  }
+
+  void take(const v1::Envelope& message) {
+    if (message.has_frame()) {
+      ++progress_.frames;
+    }
+    if (message.has_gap()) {
+      progress_.lost += message.gap().last_sequence() - message.gap().first_sequence() + 1;
+    }
+    if (message.has_event()) {
+      progress_.last_event = message.event().message();
+    }
+    if (json_) {
+      // frames as they are; the rare rest says what it is
+      print_json(message.has_frame() ? static_cast<const google::protobuf::Message&>(message.frame())
+                                     : message);
+    } else if (message.has_frame()) {
+      show(message.frame());
+    } else if (!screen_ && message.has_event()) {
+      fmt::print("tick {}: {}\n", message.event().tick(), message.event().message());
+    }
+  }
+
+  void show(const v1::Frame& frame) {
+    if (frame.scene_revision() != names_.scene_revision) {
+      names_ = ask_names(daemon_);
+    }
+    if (screen_) {
+      screen_->show(page(frame));
+    } else {
+      fmt::print("{}\n", line(frame));
+      std::fflush(stdout);
+    }
+  }
+
+  std::string page(const v1::Frame& frame) const {
+    std::string text =
+        fmt::format("tick {}  {:.6g} Hz  {}{}{}\n", frame.tick(), rate_hz_,
+                    frame.armed() ? "ARMED" : "disarmed", frame.paused() ? "  PAUSED" : "",
+                    progress_.lost > 0 ? fmt::format("  {} lost", count_of(progress_.lost, "frame")) : "");
+    for (const std::string& table :
+         {objects_table(names_, frame.objects()), devices_table(names_, frame.devices()),
+          fingers_table(names_, frame.hips()),
+          options_.hips ? hips_table(names_, frame.hips()) : std::string()}) {
+      text += table.empty() ? "" : "\n" + table;
+    }
+    return text + (progress_.last_event.empty() ? "" : "\n" + progress_.last_event + "\n");
+  }
+
+  // one line for a frame: what a log needs
+  std::string line(const v1::Frame& frame) const {
+    std::string text = fmt::format("tick {}  {}", frame.tick(), frame.armed() ? "armed" : "disarmed");
+    text += frame.paused() ? "  paused" : "";
+    const auto& objects = frame.objects().position();
+    for (int i = 0; 3 * i + 2 < objects.size(); ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      text += fmt::format(
+          "  {} {} {} {} mm", index < names_.objects.size() ? names_.objects[index] : std::to_string(i),
+          millimetres(objects[3 * i]), millimetres(objects[3 * i + 1]), millimetres(objects[3 * i + 2]));
+    }
+    if (frame.has_hips()) {
+      for (const FingerSummary& finger : summarise_fingers(names_, frame.hips())) {
+        const double force = std::hypot(finger.force[0], finger.force[1], finger.force[2]);
+        text += fmt::format("  {} {:.3f} N, {} of {} HIPs touch, {} slip", finger.name, force,
+                            finger.contacts, finger.hips, finger.slipping);
+      }
+    }
+    return text;
+  }
+
+  bool json_;
+  WatchOptions options_;
+  client::Connection daemon_;
+  double rate_hz_ = 0.0;
+  Names names_;
+  Progress progress_;
+  std::optional<Screen> screen_;
+};
+
+}  // namespace
+
+void add_watch(CLI::App& app, Command& command) {
+  const auto options = std::make_shared<WatchOptions>();
+  options->topics = {v1::OBJECTS, v1::HIPS, v1::DEVICES};
+  CLI::App* verb = add_verb(app, command, "watch", "what happens, live; Ctrl-C ends it",
+                            [options](Command& chosen) { return Watch(chosen, *options).run(); });
+  const std::map<std::string, v1::Topic> topics = {
+      {"objects", v1::OBJECTS}, {"hips", v1::HIPS}, {"devices", v1::DEVICES}};
+  verb->add_option("--topic", options->topics, "objects, hips, devices; default: all")
+      ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
+      ->type_name("TOPIC")
+      ->delimiter(',');
+  verb->add_option("--rate", options->rate,
+                   "frames a second; default: 20 on a terminal, 1 in lines, every tick with --json")
+      ->check(CLI::PositiveNumber)
+      ->type_name("HZ");
+  verb->add_option("--seconds", options->seconds, "end after so long")->check(CLI::PositiveNumber);
+  verb->add_option("--count", options->count, "end after so many frames")->check(CLI::PositiveNumber);
+  verb->add_flag("--hips", options->hips, "a table of each HIP in contact, too");
+}
+
+}  // namespace haptic::cli

@@ -1,0 +1,166 @@
+#include "client/lib/connection.h"
+
+#include <utility>
+
+#include "client/lib/error.h"
+
+namespace haptic::client {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t{64} * 1024;
+
+std::string seconds(std::chrono::milliseconds time) {
+  const std::string whole = std::to_string(time.count() / 1000);
+  const std::string tenths = std::to_string(time.count() / 100 % 10);
+  return whole + (tenths == "0" ? "" : "." + tenths) + " s";
+}
+
+}  // namespace
+
+Connection::Connection(const Options& options)
+    : name_(to_string(parse_address(options.address))),
+      timeout_(options.timeout),
+      socket_(StreamSocket::connect(parse_address(options.address), Clock::now() + options.timeout)),
+      chunk_(kChunk) {
+  greet(options, Clock::now() + options.timeout);
+}
+
+void Connection::greet(const Options& options, Clock::time_point deadline) {
+  v1::Envelope mine;
+  v1::Hello& hello = *mine.mutable_hello();
+  hello.set_major(options.major);
+  hello.set_minor(proto::kProtocolMinor);
+  hello.set_program(options.program);
+  hello.set_version(options.version);
+  send(mine, deadline);
+
+  std::optional<v1::Envelope> theirs = read(deadline, false);
+  if (!theirs) {
+    throw Unreachable("what listens at " + name_ + " did not say hello within " + seconds(options.timeout));
+  }
+  if (!theirs->has_hello()) {
+    throw Unreachable("what listens at " + name_ + " is not a hapticd: it did not begin with hello");
+  }
+  daemon_ = std::move(*theirs->mutable_hello());
+  if (daemon_.major() != options.major) {
+    v1::Error error;
+    error.set_code(v1::Error::MISMATCH);
+    error.set_message("this program speaks protocol " + std::to_string(options.major) + "." +
+                      std::to_string(proto::kProtocolMinor) + ", the daemon (" + daemon_.program() + " " +
+                      daemon_.version() + ") " + std::to_string(daemon_.major()) + "." +
+                      std::to_string(daemon_.minor()) + "; install matching versions");
+    throw ProtocolMismatch(error);
+  }
+}
+
+v1::Response Connection::call(v1::Request request) {
+  const Clock::time_point deadline = Clock::now() + timeout_;
+  v1::Envelope envelope;
+  request.set_id(++last_request_);
+  *envelope.mutable_request() = std::move(request);
+  send(envelope, deadline);
+  while (true) {
+    std::optional<v1::Envelope> answer = read(deadline, false);
+    if (!answer) {
+      throw Unreachable("the daemon at " + name_ + " did not answer within " + seconds(timeout_));
+    }
+    if (!answer->has_response()) {
+      kept_.push_back(std::move(*answer));
+      continue;
+    }
+    if (answer->response().id() != last_request_) {
+      continue;  // the late answer of a call that was given up
+    }
+    if (answer->response().has_error()) {
+      throw_error(answer->response().error());
+    }
+    return std::move(*answer->mutable_response());
+  }
+}
+
+std::uint32_t Connection::subscribe(const std::vector<v1::Topic>& topics, std::uint32_t decimation) {
+  v1::Request request;
+  for (const v1::Topic topic : topics) {
+    request.mutable_subscribe()->add_topic(topic);
+  }
+  request.mutable_subscribe()->set_decimation(decimation);
+  return call(std::move(request)).subscribed().subscription();
+}
+
+std::optional<v1::Envelope> Connection::receive(std::chrono::milliseconds timeout) {
+  if (!kept_.empty()) {
+    v1::Envelope first = std::move(kept_.front());
+    kept_.pop_front();
+    return first;
+  }
+  const Clock::time_point deadline = Clock::now() + timeout;
+  while (std::optional<v1::Envelope> message = read(deadline, true)) {
+    if (!message->has_response()) {
+      return message;
+    }
+  }
+  return std::nullopt;
+}
+
+void Connection::send(const v1::Envelope& envelope, Clock::time_point deadline) {
+  std::string bytes;
+  proto::append_frame(envelope, bytes);
+  switch (socket_.send(bytes, deadline)) {
+    case StreamSocket::Outcome::kDone:
+      return;
+    case StreamSocket::Outcome::kTimedOut:
+      throw Unreachable("the daemon at " + name_ + " takes no requests");
+    default:
+      throw_gone();
+  }
+}
+
+// the next envelope of a kind this program knows; a goodbye is thrown
+std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool until_signal) {
+  while (true) {
+    std::optional<std::string_view> message;
+    try {
+      message = reader_.next();
+    } catch (const proto::FramingError& error) {
+      throw Unreachable("what listens at " + name_ + " is not a hapticd: " + error.what());
+    }
+    if (message) {
+      v1::Envelope envelope;
+      if (!envelope.ParseFromArray(message->data(), static_cast<int>(message->size()))) {
+        throw Unreachable("what listens at " + name_ + " is not a hapticd: a message cannot be read");
+      }
+      if (envelope.has_goodbye()) {
+        throw_error(envelope.goodbye().error());
+      }
+      if (envelope.body_case() == v1::Envelope::BODY_NOT_SET) {
+        continue;  // from a newer daemon
+      }
+      return envelope;
+    }
+    std::size_t received = 0;
+    switch (socket_.receive(chunk_, received, deadline)) {
+      case StreamSocket::Outcome::kDone:
+        reader_.append(std::string_view(chunk_.data(), received));
+        break;
+      case StreamSocket::Outcome::kInterrupted:
+        if (until_signal) {
+          return std::nullopt;
+        }
+        break;
+      case StreamSocket::Outcome::kTimedOut:
+        return std::nullopt;
+      case StreamSocket::Outcome::kClosed:
+        throw Unreachable("the daemon at " + name_ + " closed the connection");
+    }
+  }
+}
+
+// nothing can be sent any more, but why may already be waiting to be read
+void Connection::throw_gone() {
+  const Clock::time_point deadline = Clock::now() + std::chrono::milliseconds(200);
+  while (read(deadline, false)) {
+  }
+  throw Unreachable("the daemon at " + name_ + " closed the connection");
+}
+
+}  // namespace haptic::client

@@ -1,0 +1,41 @@
+#pragma once
+// From a request to what handles it. The table in dispatch.cpp is the only place that says which call needs
+// which role, and it is asked before anything else is done. io thread.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+#include "ipc/publisher.h"
+#include "ipc/reply.h"
+#include "ipc/scene_store.h"
+#include "ipc/services.h"
+#include "ipc/servo_link.h"
+
+namespace haptic::ipc {
+
+/// Who asks.
+struct Caller {
+  ClientId id = 0;
+  v1::Role role = v1::ROLE_UNSPECIFIED;
+  FrameSink sink;                                  // for its subscriptions
+  std::function<void(std::uint32_t)> drop_frames;  // of a subscription that has ended
+};
+
+/// What handlers work with.
+struct Desk {
+  Services& services;
+  ServoLink& servo;
+  SceneStore& scenes;
+  Publisher& publisher;
+  SteadyClock::time_point started;
+  std::function<std::size_t()> count_clients;
+};
+
+/// The least role that the request needs; ROLE_UNSPECIFIED if this daemon does not know the call.
+v1::Role least_role(const v1::Request& request) noexcept;
+
+/// Answers the request, now or later, exactly once.
+void dispatch(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+
+}  // namespace haptic::ipc

@@ -1,0 +1,16 @@
+#include "ipc/handlers.h"
+
+namespace haptic::ipc {
+
+void handle_get_scene(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
+                      const Reply& reply) {
+  v1::Response response;
+  *response.mutable_scene() = desk.scenes.current();
+  reply.send(std::move(response));
+}
+
+void handle_load_scene(Desk& desk, const Caller& /*caller*/, const v1::Request& request, const Reply& reply) {
+  desk.scenes.load(request.load_scene(), reply);
+}
+
+}  // namespace haptic::ipc

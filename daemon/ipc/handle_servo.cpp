@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <chrono>
+
+#include "ipc/convert.h"
+#include "ipc/handlers.h"
+
+namespace haptic::ipc {
+namespace {
+
+servo::Command command_of(const v1::Request& request) noexcept {
+  servo::Command command;
+  switch (request.call_case()) {
+    case v1::Request::kArm:
+      command.kind = servo::CommandKind::kArm;
+      break;
+    case v1::Request::kPause:
+      command.kind = servo::CommandKind::kPause;
+      break;
+    case v1::Request::kResume:
+      command.kind = servo::CommandKind::kResume;
+      break;
+    case v1::Request::kStep:
+      command.kind = servo::CommandKind::kStep;
+      command.ticks = std::max<std::uint64_t>(1, request.step().ticks());
+      break;
+    case v1::Request::kResetScene:
+      command.kind = servo::CommandKind::kReset;
+      break;
+    case v1::Request::kClearFault:
+      command.kind = servo::CommandKind::kClearFault;
+      break;
+    default:
+      command.kind = servo::CommandKind::kDisarm;
+      break;
+  }
+  return command;
+}
+
+// a step is answered when its ticks have run; nobody waits for more than an hour of them
+std::chrono::milliseconds time_of(const servo::Command& command, double rate_hz) noexcept {
+  constexpr double kHour = 3600e3;
+  const double time_ms = 1e3 * static_cast<double>(command.ticks) / rate_hz;
+  return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(time_ms, kHour)));
+}
+
+std::string nothing_to_do(v1::Request::CallCase call) {
+  switch (call) {
+    case v1::Request::kArm:
+      return "it is armed already";
+    case v1::Request::kDisarm:
+      return "it is disarmed already";
+    case v1::Request::kPause:
+      return "it is paused already";
+    case v1::Request::kResume:
+      return "it is not paused";
+    case v1::Request::kStep:
+      return "it is not paused; pause it to run single ticks";
+    case v1::Request::kClearFault:
+      return "no fault is latched";
+    default:
+      return "there is nothing to do";
+  }
+}
+
+std::string name_fault(const Desk& desk) {
+  for (const servo::DeviceSnapshot& device : desk.publisher.latest().devices) {
+    if (device.fault.kind != safety::FaultKind::kNone) {
+      return " (" + in_words(to_wire(device.fault, desk.services.devices)) + ")";
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Request& request,
+                          const Reply& reply) {
+  const v1::Request::CallCase call = request.call_case();
+  const servo::Command command = command_of(request);
+  const auto on_answer = [&desk, call, reply](Outcome outcome) {
+    switch (outcome) {
+      case Outcome::kDone:
+        reply.done();
+        break;
+      case Outcome::kNothingToDo:
+        reply.fail(v1::Error::NOTHING_TO_DO, nothing_to_do(call));
+        break;
+      case Outcome::kFaultRefused:
+        reply.fail(v1::Error::FAULT_LATCHED,
+                   "a fault is latched" + name_fault(desk) + "; find its cause, then clear it");
+        break;
+      case Outcome::kNoAnswer:
+        reply.fail(v1::Error::FAILED, "the servo thread does not answer");
+        break;
+    }
+  };
+  const bool sent =
+      desk.servo.submit(command, SteadyClock::now(), on_answer, time_of(command, desk.services.rate_hz));
+  if (!sent) {
+    reply.fail(v1::Error::BUSY, "the servo thread has too many commands waiting; try again");
+  }
+}
+
+}  // namespace haptic::ipc

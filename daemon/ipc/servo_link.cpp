@@ -1,0 +1,74 @@
+#include "ipc/servo_link.h"
+
+#include <memory>
+#include <utility>
+
+namespace haptic::ipc {
+namespace {
+
+Outcome outcome_of(servo::EventKind kind) noexcept {
+  switch (kind) {
+    case servo::EventKind::kNothingToDo:
+      return Outcome::kNothingToDo;
+    case servo::EventKind::kFaultRefused:
+      return Outcome::kFaultRefused;
+    default:
+      return Outcome::kDone;
+  }
+}
+
+bool is_answer(servo::EventKind kind) noexcept {
+  return kind == servo::EventKind::kDone || kind == servo::EventKind::kNothingToDo ||
+         kind == servo::EventKind::kFaultRefused;
+}
+
+}  // namespace
+
+ServoLink::ServoLink(servo::Mailbox& mailbox, std::chrono::milliseconds patience, OnEvent on_event)
+    : mailbox_(mailbox), patience_(patience), on_event_(std::move(on_event)) {}
+
+bool ServoLink::submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer,
+                       std::chrono::milliseconds takes) {
+  command.request = last_request_ + 1;
+  if (!mailbox_.commands.push(command)) {
+    return false;
+  }
+  ++last_request_;
+  pending_.emplace(last_request_, Pending{now + patience_ + takes, std::move(on_answer)});
+  return true;
+}
+
+void ServoLink::poll(SteadyClock::time_point now) {
+  servo::Event event;
+  while (mailbox_.events.pop(event)) {
+    take(event);
+  }
+  for (auto entry = pending_.begin(); entry != pending_.end();) {
+    if (entry->second.deadline > now) {
+      ++entry;
+      continue;
+    }
+    const OnAnswer on_answer = std::move(entry->second.on_answer);
+    entry = pending_.erase(entry);
+    on_answer(Outcome::kNoAnswer);
+  }
+}
+
+void ServoLink::take(const servo::Event& event) {
+  if (event.kind == servo::EventKind::kSceneRetired) {
+    const std::unique_ptr<servo::PreparedScene> retired(event.scene);
+    return;
+  }
+  on_event_(event);
+  if (!is_answer(event.kind)) {
+    return;
+  }
+  const auto found = pending_.find(event.request);
+  if (found != pending_.end()) {
+    const OnAnswer on_answer = std::move(found->second.on_answer);
+    pending_.erase(found);
+    on_answer(outcome_of(event.kind));
+  }
+}
+
+}  // namespace haptic::ipc

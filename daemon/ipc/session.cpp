@@ -1,0 +1,256 @@
+#include "ipc/session.h"
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/write.hpp>
+
+namespace haptic::ipc {
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+// one write: enough to be efficient, little enough that control does not wait long behind it
+constexpr std::size_t kBatchBytes = std::size_t{64} * 1024;
+
+std::string version_text(std::uint32_t major, std::uint32_t minor) {
+  return std::to_string(major) + "." + std::to_string(minor);
+}
+
+}  // namespace
+
+Session::Session(ClientId id, Socket socket, std::optional<v1::Role> role, const SessionLimits& limits,
+                 Desk& desk, OnEnd on_end)
+    : id_(id),
+      socket_(std::move(socket)),
+      role_(role),
+      limits_(limits),
+      desk_(desk),
+      on_end_(std::move(on_end)),
+      timer_(socket_.get_executor()),
+      reader_(limits.greeting_bytes),
+      chunk_{},
+      outbox_(limits.outbox) {
+  caller_.id = id;
+  caller_.role = role.value_or(v1::ROLE_UNSPECIFIED);
+}
+
+void Session::start() {
+  const std::weak_ptr<Session> weak = weak_from_this();
+  caller_.sink = [weak](std::uint32_t subscription, std::uint64_t sequence, SharedBytes body) {
+    const auto self = weak.lock();
+    if (self && self->state_ == State::kServing) {
+      self->outbox_.push_frame(subscription, sequence, std::move(body));
+      self->write();
+    }
+  };
+  caller_.drop_frames = [weak](std::uint32_t subscription) {
+    if (const auto self = weak.lock()) {
+      self->outbox_.forget(subscription);
+    }
+  };
+  timer_.expires_after(limits_.hello);
+  timer_.async_wait([weak](const error_code& error) {
+    const auto self = weak.lock();
+    if (!error && self && self->state_ == State::kConnected) {
+      self->cut_off(make_error(v1::Error::INVALID, "no hello came in time"));
+    }
+  });
+  read();
+}
+
+void Session::read() {
+  socket_.async_read_some(asio::buffer(chunk_),
+                          [self = shared_from_this()](const error_code& error, std::size_t size) {
+                            if (error) {
+                              self->end();
+                              return;
+                            }
+                            self->take_bytes(size);
+                            if (self->state_ != State::kEnded) {
+                              self->read();
+                            }
+                          });
+}
+
+void Session::take_bytes(std::size_t size) {
+  if (state_ == State::kLeaving) {
+    return;  // read only so that the goodbye is not lost with what the client still sends
+  }
+  reader_.append(std::string_view(chunk_.data(), size));
+  try {
+    while (state_ == State::kConnected || state_ == State::kServing) {
+      const auto message = reader_.next();
+      if (!message) {
+        return;
+      }
+      take_message(*message);
+    }
+  } catch (const proto::FramingError& error) {
+    cut_off(make_error(v1::Error::INVALID, error.what()));
+  }
+}
+
+void Session::take_message(std::string_view bytes) {
+  v1::Envelope envelope;
+  if (!envelope.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    cut_off(make_error(v1::Error::INVALID, "a message cannot be read as an envelope"));
+  } else if (state_ == State::kConnected) {
+    take_hello(envelope);
+  } else if (envelope.has_request()) {
+    take_request(envelope.request());
+  } else if (envelope.body_case() != v1::Envelope::BODY_NOT_SET) {
+    cut_off(make_error(v1::Error::INVALID, "after hello a client sends requests only"));
+  }
+}
+
+void Session::take_hello(const v1::Envelope& envelope) {
+  if (!envelope.has_hello()) {
+    cut_off(make_error(v1::Error::INVALID, "the first message must be hello"));
+    return;
+  }
+  if (!role_) {
+    cut_off(make_error(v1::Error::REFUSED,
+                       "your user may not use this daemon; its config allows groups in listen.unix.allow"));
+    return;
+  }
+  const v1::Hello& theirs = envelope.hello();
+  push_control(hello());
+  if (theirs.major() != proto::kProtocolMajor) {
+    cut_off(make_error(v1::Error::MISMATCH,
+                       "hapticd " + desk_.services.version + " speaks protocol " +
+                           version_text(proto::kProtocolMajor, proto::kProtocolMinor) + ", " +
+                           (theirs.program().empty() ? "the client" : theirs.program()) + " " +
+                           theirs.version() + " speaks " + version_text(theirs.major(), theirs.minor()) +
+                           "; install matching versions"));
+    return;
+  }
+  timer_.cancel();
+  reader_.set_limit(limits_.request_bytes);
+  state_ = State::kServing;
+}
+
+v1::Envelope Session::hello() const {
+  v1::Envelope envelope;
+  v1::Hello& mine = *envelope.mutable_hello();
+  mine.set_major(proto::kProtocolMajor);
+  mine.set_minor(proto::kProtocolMinor);
+  mine.set_program("hapticd");
+  mine.set_version(desk_.services.version);
+  mine.set_role(caller_.role);
+  *mine.mutable_warning() = desk_.services.real_time.warning();
+  mine.set_scene_revision(desk_.scenes.current().revision());
+  return envelope;
+}
+
+void Session::take_request(const v1::Request& request) {
+  const std::weak_ptr<Session> weak = weak_from_this();
+  ++open_requests_;
+  const Reply reply(request.id(), [weak](v1::Response&& response) {
+    const auto self = weak.lock();
+    if (!self) {
+      return;
+    }
+    --self->open_requests_;
+    v1::Envelope envelope;
+    *envelope.mutable_response() = std::move(response);
+    self->push_control(envelope);
+  });
+  if (open_requests_ > limits_.open_requests) {
+    reply.fail(v1::Error::BUSY, std::to_string(limits_.open_requests) + " requests wait for their answers");
+    return;
+  }
+  dispatch(desk_, caller_, request, reply);
+}
+
+void Session::tell(const std::string& framed_event) {
+  if (state_ != State::kServing) {
+    return;
+  }
+  if (!outbox_.push_control(framed_event)) {
+    cut_off(make_error(v1::Error::FAILED, "you read too slowly: the answers and events for you overflow"));
+    return;
+  }
+  write();
+}
+
+void Session::push_control(const v1::Envelope& envelope) {
+  if (state_ != State::kConnected && state_ != State::kServing) {
+    return;
+  }
+  std::string bytes;
+  proto::append_frame(envelope, bytes);
+  if (!outbox_.push_control(std::move(bytes))) {
+    cut_off(make_error(v1::Error::FAILED, "you read too slowly: the answers and events for you overflow"));
+    return;
+  }
+  write();
+}
+
+void Session::cut_off(const v1::Error& error) {
+  if (state_ == State::kLeaving || state_ == State::kEnded) {
+    return;
+  }
+  desk_.publisher.forget(id_);
+  if (state_ == State::kServing) {
+    outbox_.clear();
+  }
+  state_ = State::kLeaving;
+  v1::Envelope envelope;
+  *envelope.mutable_goodbye()->mutable_error() = error;
+  std::string bytes;
+  proto::append_frame(envelope, bytes);
+  outbox_.push_control(std::move(bytes));
+  timer_.expires_after(limits_.goodbye);
+  timer_.async_wait([weak = weak_from_this()](const error_code& failure) {
+    const auto self = weak.lock();
+    if (!failure && self) {
+      self->end();
+    }
+  });
+  write();
+}
+
+void Session::write() {
+  if (!writing_.empty() || state_ == State::kEnded) {
+    return;
+  }
+  writing_ = outbox_.take(kBatchBytes);
+  if (writing_.empty()) {
+    if (state_ == State::kLeaving) {
+      // the client sees the end after its goodbye; reading goes on until it closes, or time is up
+      error_code ignored;
+      socket_.shutdown(Socket::shutdown_send, ignored);
+    }
+    return;
+  }
+  std::vector<asio::const_buffer> buffers;
+  for (const Piece& piece : writing_) {
+    buffers.push_back(asio::buffer(piece.own));
+    if (piece.shared) {
+      buffers.push_back(asio::buffer(*piece.shared));
+    }
+  }
+  asio::async_write(socket_, buffers, [self = shared_from_this()](const error_code& error, std::size_t) {
+    self->writing_.clear();
+    if (error) {
+      self->end();
+    } else {
+      self->write();
+    }
+  });
+}
+
+void Session::end() {
+  if (state_ == State::kEnded) {
+    return;
+  }
+  state_ = State::kEnded;
+  desk_.publisher.forget(id_);
+  outbox_.clear();
+  timer_.cancel();
+  error_code ignored;
+  socket_.close(ignored);
+  on_end_(id_);
+}
+
+}  // namespace haptic::ipc

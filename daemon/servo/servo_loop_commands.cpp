@@ -1,0 +1,125 @@
+// What the tick does with commands. Every command is answered by exactly one event.
+
+#include "servo/servo_loop.h"
+
+namespace haptic::servo {
+
+namespace {
+
+constexpr int kCommandsPerTick = 8;
+
+// a command is only taken when there is room for all that may come of it (its answer, and a retired scene or
+// the answer to a step), so that neither an answer nor memory to free is ever lost
+constexpr std::size_t kEventsPerCommand = 2;
+
+constexpr std::uint64_t kForever = ~std::uint64_t{0};
+
+}  // namespace
+
+void ServoLoop::receive_commands(const Instant& now) noexcept {
+  Command command;
+  for (int i = 0; i < kCommandsPerTick; ++i) {
+    if (mailbox_.events.write_available() < kEventsPerCommand || !mailbox_.commands.pop(command)) return;
+    obey(command, now);
+  }
+}
+
+void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
+  EventKind answer = EventKind::kDone;
+  switch (command.kind) {
+    case CommandKind::kArm:
+      answer = arm();
+      break;
+    case CommandKind::kDisarm:
+      if (!armed_) answer = EventKind::kNothingToDo;
+      disarm();
+      break;
+    case CommandKind::kPause:
+      if (paused_) answer = EventKind::kNothingToDo;
+      paused_ = true;
+      break;
+    case CommandKind::kResume:
+      answer = resume(now);
+      break;
+    case CommandKind::kStep:
+      if (paused_) {
+        // of two steps that overlap the first is answered now, and both run
+        if (step_unanswered_) answer_step(now);
+        begin_step(command);
+        return;
+      }
+      answer = EventKind::kNothingToDo;
+      break;
+    case CommandKind::kReset:
+      scene_->world.reset();
+      restart_ramps();
+      break;
+    case CommandKind::kClearFault:
+      answer = clear_fault();
+      break;
+    case CommandKind::kSwapScene:
+      swap_scene(command.scene, now);
+      break;
+    case CommandKind::kResetStats:
+      stats_ = {};
+      scene_->world.clear_transitions();
+      break;
+  }
+  send({.kind = answer, .command = command.kind, .request = command.request, .fault = fault_}, now);
+}
+
+EventKind ServoLoop::arm() noexcept {
+  if (fault_.kind != safety::FaultKind::kNone) return EventKind::kFaultRefused;
+  if (armed_) return EventKind::kNothingToDo;
+  armed_ = true;
+  for (Channel& channel : channels_) channel.guard.arm();
+  return EventKind::kDone;
+}
+
+EventKind ServoLoop::resume(const Instant& now) noexcept {
+  if (!paused_) return EventKind::kNothingToDo;
+  paused_ = false;
+  steps_left_ = 0;
+  // hands have moved meanwhile
+  restart_ramps();
+  if (step_unanswered_) answer_step(now);
+  return EventKind::kDone;
+}
+
+EventKind ServoLoop::clear_fault() noexcept {
+  if (fault_.kind == safety::FaultKind::kNone) return EventKind::kNothingToDo;
+  fault_ = {};
+  for (Channel& channel : channels_) channel.guard.clear();
+  return EventKind::kDone;
+}
+
+void ServoLoop::swap_scene(PreparedScene* scene, const Instant& now) noexcept {
+  PreparedScene* const retired = scene_.release();
+  scene_.reset(scene);
+  restart_ramps();
+  send({.kind = EventKind::kSceneRetired, .command = CommandKind::kSwapScene, .scene = retired}, now);
+}
+
+void ServoLoop::restart_ramps() noexcept {
+  for (Channel& channel : channels_) channel.guard.restart_ramp();
+}
+
+void ServoLoop::begin_step(const Command& command) noexcept {
+  const std::uint64_t ticks = command.ticks == 0 ? 1 : command.ticks;
+  steps_left_ = ticks > kForever - steps_left_ ? kForever : steps_left_ + ticks;
+  step_request_ = command.request;
+  step_unanswered_ = true;
+}
+
+void ServoLoop::finish_step(const Instant& now) noexcept {
+  if (paused_ && steps_left_ > 0) --steps_left_;
+  const bool room = mailbox_.events.write_available() > 0;
+  if (step_unanswered_ && steps_left_ == 0 && room) answer_step(now);
+}
+
+void ServoLoop::answer_step(const Instant& now) noexcept {
+  step_unanswered_ = false;
+  send({.kind = EventKind::kDone, .command = CommandKind::kStep, .request = step_request_}, now);
+}
+
+}  // namespace haptic::servo

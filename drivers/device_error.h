@@ -1,0 +1,14 @@
+#pragma once
+// What a driver throws, before the servo thread runs or beside it.
+
+#include <stdexcept>
+
+namespace haptic::drivers {
+
+/// A device cannot be made, opened or started; the message tells a person why, and names the device.
+class DeviceError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace haptic::drivers

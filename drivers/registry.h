@@ -1,0 +1,23 @@
+#pragma once
+// From a device in the config to a Device: the one place that knows every driver. A new driver is one row in
+// the table of registry.cpp.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/device.h"
+#include "drivers/device_error.h"
+#include "drivers/path.h"
+#include "haptic/v1/config.pb.h"
+
+namespace haptic::drivers {
+
+/// The file with the path that the device follows, as the config names it; empty if it follows none.
+std::string path_file_of(const v1::Device& config);
+
+/// A device that is not yet started. `path` holds the rows of path_file_of(). The config must be valid but
+/// for its driver: throws DeviceError if it names none that is known here.
+std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path);
+
+}  // namespace haptic::drivers

@@ -1,0 +1,25 @@
+#pragma once
+// What both sides of the wire agree on before the first byte: the version that each tells in its Hello, and
+// the sizes that each accepts.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace haptic::proto {
+
+/// Sides with different majors do not talk to each other. A minor only adds, and both sides ignore what they
+/// do not know, so any two minors do.
+inline constexpr std::uint32_t kProtocolMajor = 1;
+inline constexpr std::uint32_t kProtocolMinor = 0;
+
+/// The largest message that the daemon accepts from a peer that has not said Hello.
+inline constexpr std::size_t kGreetingLimit = std::size_t{64} * 1024;
+
+/// The largest message that the daemon accepts after Hello: a scene, without the meshes it names.
+inline constexpr std::size_t kRequestLimit = std::size_t{1024} * 1024;
+
+/// The largest message that a client accepts: a frame of 16384 HIPs, each held by several objects, is below
+/// it.
+inline constexpr std::size_t kReplyLimit = std::size_t{64} * 1024 * 1024;
+
+}  // namespace haptic::proto

@@ -1,0 +1,79 @@
+#include "drivers/registry.h"
+
+#include <gtest/gtest.h>
+
+namespace haptic::drivers {
+namespace {
+
+TEST(Registry, MakesASimulatedDeviceOfItsConfig) {
+  v1::Device config;
+  config.set_name("left");
+  config.mutable_simulated()->set_mass(0.2);
+  config.mutable_simulated()->set_damping(4.0);
+  config.mutable_simulated()->mutable_hand()->set_path("left.csv");
+  EXPECT_EQ(path_file_of(config), "left.csv");
+
+  const std::unique_ptr<Device> device = make_device(config, {{.position = {0.1, 0.0, 0.0}}});
+  EXPECT_EQ(device->info().name, "left");
+  EXPECT_EQ(device->info().driver, "simulated");
+  device->start();
+  DeviceSample sample;
+  ASSERT_TRUE(device->read(0, sample));
+  EXPECT_EQ(sample.position.x, 0.1);
+  // without a hand a force of 1 N against 4 N s/m ends at 0.25 m/s
+  for (Nanoseconds now = 0; now < 1'000'000'000; now += 1'000'000) {
+    device->write(now, {.expires = now + 2'000'000, .force = {1.0, 0.0, 0.0}});
+    ASSERT_TRUE(device->read(now + 1'000'000, sample));
+  }
+  EXPECT_NEAR(sample.velocity.x, 0.25, 1e-6);
+}
+
+TEST(Registry, TheHandHoldsASimulatedDevice) {
+  v1::Device config;
+  config.mutable_simulated()->set_mass(0.1);
+  config.mutable_simulated()->mutable_hand()->set_stiffness(100.0);
+  config.mutable_simulated()->mutable_hand()->set_damping(5.0);
+  config.mutable_simulated()->mutable_hand()->set_repeat(true);
+  const std::unique_ptr<Device> device = make_device(config, {});
+  device->start();
+  DeviceSample sample;
+  // 1 N against 100 N/m
+  for (Nanoseconds now = 0; now < 2'000'000'000; now += 1'000'000) {
+    ASSERT_TRUE(device->read(now, sample));
+    device->write(now, {.expires = now + 2'000'000, .force = {1.0, 0.0, 0.0}});
+  }
+  EXPECT_NEAR(sample.position.x, 0.01, 1e-6);
+}
+
+TEST(Registry, MakesAPlaybackDeviceOfItsConfig) {
+  v1::Device config;
+  config.set_name("probe");
+  config.mutable_playback()->set_path("press.csv");
+  config.mutable_playback()->set_repeat(true);
+  EXPECT_EQ(path_file_of(config), "press.csv");
+
+  const std::unique_ptr<Device> device =
+      make_device(config, {{.time = 0.0}, {.time = 1.0, .position = {1.0, 0.0, 0.0}}});
+  EXPECT_EQ(device->info().name, "probe");
+  EXPECT_EQ(device->info().driver, "playback");
+  device->start();
+  DeviceSample sample;
+  ASSERT_TRUE(device->read(0, sample));
+  ASSERT_TRUE(device->read(1'250'000'000, sample));
+  EXPECT_DOUBLE_EQ(sample.position.x, 0.25) << "the path starts again";
+}
+
+TEST(Registry, ADeviceWithoutADriverIsAnErrorThatNamesIt) {
+  v1::Device config;
+  config.set_name("nameless");
+  EXPECT_EQ(path_file_of(config), "");
+  try {
+    make_device(config, {});
+    FAIL() << "no exception";
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("nameless"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace haptic::drivers
