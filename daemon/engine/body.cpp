@@ -59,7 +59,7 @@ glm::dmat3 principal_axes(Symmetric& m) {
 // integral of rho x x^T over a tetrahedron, x from `origin`, added to `sum`
 void add_second_moment(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& origin, double mass,
                        Symmetric& sum) {
-  std::array<glm::dvec3, 5> x;  // the corners and, last, their sum
+  std::array<glm::dvec3, 5> x{};  // the corners and, last, their sum
   for (std::size_t i = 0; i < 4; ++i) {
     x[i] = corners[i] - origin;
     x[4] += x[i];

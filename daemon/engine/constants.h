@@ -26,6 +26,10 @@ inline constexpr double kFarthest = 1e5;
 /// tick is counted.
 inline constexpr int kTransitionLimit = 4096;
 
+/// Nearness, in length tolerances, at which a path from outside counts as touching an edge or a vertex where
+/// it begins: a proxy that left the hull there may be a few tolerances beside the feature that it was on.
+inline constexpr double kTouchReach = 10.0;
+
 /// Nearness, in length tolerances, at which a proxy that goes round in a circle is put on a vertex or an
 /// edge.
 inline constexpr double kRelocationReach = 20.0;

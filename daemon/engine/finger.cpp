@@ -13,7 +13,7 @@ namespace {
 // a turn divided by the golden ratio squared: the angle between neighbours on the spiral of a sunflower
 constexpr double kGoldenAngle = 2.39996322972865332223;
 
-// right-handed orthonormal: pole, and two axes across it
+// orthonormal: the pole, and two axes across it that are the same for the opposite pole
 struct CapAxes {
   glm::dvec3 across, along, pole;
 };
@@ -22,13 +22,17 @@ CapAxes axes_of(const glm::dvec3& direction) {
   // scaled first, so that the length neither overflows nor vanishes
   const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
   const glm::dvec3 pole = glm::normalize(direction / largest);
-  // the coordinate axis least aligned with the pole: the first of equals, for one result
+  // from the coordinate axis least aligned with the pole, the first of equals
   const glm::dvec3 size = glm::abs(pole);
-  glm::dvec3 other{1.0, 0.0, 0.0};
-  if (size.y < size.x && size.y <= size.z) other = {0.0, 1.0, 0.0};
-  if (size.z < size.x && size.z < size.y) other = {0.0, 0.0, 1.0};
-  const glm::dvec3 along = glm::normalize(glm::cross(pole, other));
-  return {glm::cross(along, pole), along, pole};
+  const int least = size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2);
+  glm::dvec3 across = -pole[least] * pole;
+  across[least] += 1.0;
+  across = glm::normalize(across);
+  // right-handed about a pole whose next coordinate is positive, left-handed about its opposite
+  glm::dvec3 along = glm::cross(pole, across);
+  const double next = pole[(least + 1) % 3];
+  if (next < 0.0 || (next == 0.0 && pole[(least + 2) % 3] < 0.0)) along = -along;
+  return {across, along, pole};
 }
 
 }  // namespace

@@ -18,18 +18,26 @@ constexpr double kShortDecay = 0.5;
 // exp(-a) is no longer a normal number
 constexpr double kLongDecay = 708.0;
 
-// sum of terms whose ratios are -x / ratio[i]: both series of the circular functions, by Horner
+// 1 - x r0 (1 - x r1 (1 - ...: both series of the circular functions, by the ratios of their terms
 template <std::size_t N>
 double alternating_series(double x, const std::array<double, N>& ratios) noexcept {
   double sum = 1.0;
-  for (std::size_t i = N; i-- > 0;) sum = 1.0 - x / ratios[i] * sum;
+  for (std::size_t i = N; i-- > 0;) sum = 1.0 - x * ratios[i] * sum;
   return sum;
+}
+
+// 1 / (n (n + 1)) for n = first, first + 2 ...
+template <std::size_t N>
+constexpr std::array<double, N> ratios_from(int first) noexcept {
+  std::array<double, N> ratios{};
+  for (std::size_t i = 0; i < N; ++i, first += 2) ratios[i] = 1.0 / (first * (first + 1));
+  return ratios;
 }
 
 // |r| <= pi/4: the first omitted terms are 1e-19 and 2e-18
 SinCos sin_cos_of_octant(double r) noexcept {
-  constexpr std::array kSine{2.0 * 3, 4.0 * 5, 6.0 * 7, 8.0 * 9, 10.0 * 11, 12.0 * 13, 14.0 * 15, 16.0 * 17};
-  constexpr std::array kCosine{1.0 * 2, 3.0 * 4, 5.0 * 6, 7.0 * 8, 9.0 * 10, 11.0 * 12, 13.0 * 14, 15.0 * 16};
+  constexpr auto kSine = ratios_from<8>(2);
+  constexpr auto kCosine = ratios_from<8>(1);
   const double square = r * r;
   return {r * alternating_series(square, kSine), alternating_series(square, kCosine)};
 }

@@ -105,6 +105,11 @@ class StructureTest(unittest.TestCase):
         self.assert_only_problem({"daemon/engine/world.h": text}, "daemon/engine/world.h", 2, "throw outside")
         self.assertEqual([], problems_in({"daemon/engine/shapes.h": text}))
 
+    def test_only_what_builds_a_scene_composes_words(self):
+        text = "#pragma once\n#include <sstream>\n"
+        self.assert_only_problem({"daemon/engine/world.h": text}, "daemon/engine/world.h", 2, "part of a tick")
+        self.assertEqual([], problems_in({"daemon/engine/shapes.h": text}))
+
     def test_a_source_includes_its_header_first(self):
         text = '#include <cmath>\n#include "engine/proxy.h"\n'
         self.assert_only_problem({"daemon/engine/proxy.cpp": text}, "daemon/engine/proxy.cpp", 1, "before anything")

@@ -1,30 +1,28 @@
+#include "engine/constants.h"
 #include "engine/constraint/ways.h"
 
 namespace haptic::engine {
 namespace {
 
-/// Whether a path that touches the hull at q, on the rim of this face, goes on into a cell around the edge or
-/// vertex that is touched. A path that only touches there stays outside.
+/// Whether some cell around the edge or vertex that a point is on contains the direction to the HIP.
+bool is_entered(const Tick& tick, ConstraintState state, Index feature) noexcept {
+  Proxy at_feature;
+  enter(at_feature, state, kNone, feature);
+  return cells_facing_hip(tick, at_feature).first != kNone;
+}
+
+/// Whether a path that touches the hull at q, on the rim of this face, goes on into the complex. A path that
+/// only touches there stays outside; so every edge and vertex that q could as well be on must agree.
 bool enters_at_rim(const Tick& tick, const glm::dvec3& q, Index face_index) noexcept {
   const FaceRim& rim = tick.complex.rims()[face_index];
-  const double reach = 10.0 * tick.eps();
-  bool on_edge[3];
-  int edges = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    on_edge[i] = rim.inward[i].side(q) <= reach;
-    edges += on_edge[i] ? 1 : 0;
+    const bool on_edge = rim.inward[i].side(q) <= kTouchReach * tick.eps();
+    if (on_edge && !is_entered(tick, ConstraintState::kEdg, rim.edges[i])) return false;
+    const bool on_vertex =
+        glm::distance(tick.complex.vertices()[rim.vertices[i]], q) <= kTouchReach * tick.eps();
+    if (on_vertex && !is_entered(tick, ConstraintState::kVer, rim.vertices[i])) return false;
   }
-  if (edges == 0) return true;
-  Proxy at_rim;
-  at_rim.position = q;
-  if (edges == 1) {
-    const std::size_t i = on_edge[0] ? 0 : (on_edge[1] ? 1 : 2);
-    enter(at_rim, ConstraintState::kEdg, kNone, rim.edges[i]);
-  } else {
-    const std::size_t shared = on_edge[0] && on_edge[1] ? 1 : (on_edge[1] && on_edge[2] ? 2 : 0);
-    enter(at_rim, ConstraintState::kVer, kNone, rim.vertices[shared]);
-  }
-  return cells_facing_hip(tick, at_rim).first != kNone;
+  return true;
 }
 
 }  // namespace
@@ -53,7 +51,7 @@ bool step_out(Tick& tick, Proxy& proxy) noexcept {
     for (const Plane& edge : rim.inward) {
       if (edge.side(x) < -tick.eps()) return;
     }
-    if (t * glm::length(path) <= 10.0 * tick.eps() && !enters_at_rim(tick, q, index)) return;
+    if (t * glm::length(path) <= kTouchReach * tick.eps() && !enters_at_rim(tick, q, index)) return;
     first = t;
     hit = index;
   });

@@ -7,10 +7,12 @@
 
 #include <array>
 #include <cmath>
+#include <glm/vector_relational.hpp>
 
 #include "engine/constants.h"
 #include "engine/shapes.h"
 #include "tests/support/expect_vector.h"
+#include "tests/support/meshes.h"
 #include "tests/support/probe.h"
 
 namespace haptic::engine {
@@ -24,14 +26,22 @@ using test::rigid;
 
 constexpr double kExact = 1e-12;  // m; rounding of coordinates of some centimetres, with room
 
-/// A rigid cube of 100 mm in 50 mm of air: its faces are at +-50 mm.
-Probe cube(const dvec3& start, const Material& solid = rigid()) {
-  return {CellComplex::build(box_mesh({0.1, 0.1, 0.1}, 0.05)), {air(), solid}, start};
+/// A cube of 100 mm around the origin (region 1) in 50 mm of something else (region 0), in Kuhn's cells of 50
+/// mm.
+TetraMesh cube_mesh() {
+  return test::kuhn_grid({4, 4, 4}, dvec3(-0.1), dvec3(0.1), [](const dvec3& p) {
+    return glm::all(glm::lessThan(glm::abs(p), dvec3(0.05))) ? 1 : 0;
+  });
 }
 
-/// An air-filled room of 100 mm in rigid rock 50 mm thick.
+/// A rigid cube in air: its faces are at +-50 mm.
+Probe cube(const dvec3& start, const Material& solid = rigid()) {
+  return {CellComplex::build(cube_mesh()), {air(), solid}, start};
+}
+
+/// An air-filled room in rigid rock.
 Probe room(const dvec3& start, const Material& rock = rigid()) {
-  return {CellComplex::build(box_mesh({0.1, 0.1, 0.1}, 0.05)), {rock, air()}, start};
+  return {CellComplex::build(cube_mesh()), {rock, air()}, start};
 }
 
 /// A rigid L-shaped prism along z: floor to y = 20 mm, wall to x = 20 mm, the notch edge between them at (20,
@@ -214,7 +224,7 @@ TEST(Constraint, SlippingTellsWhetherTheProxyMovedInTheTick) {
 }
 
 TEST(Constraint, EveryTransitionIsCountedAndTimedWhenAClockIsLent) {
-  const CellComplex complex = CellComplex::build(box_mesh({0.1, 0.1, 0.1}, 0.05));
+  const CellComplex complex = CellComplex::build(cube_mesh());
   const std::vector<Material> materials{air(), rigid()};
   Proxy proxy;
   TransitionTable table;
@@ -233,37 +243,12 @@ TEST(Constraint, EveryTransitionIsCountedAndTimedWhenAClockIsLent) {
 }
 
 TEST(Constraint, TransitionBoundLeavesTheProxyOnItsWayAndIsCounted) {
-  // 1500 boxes in a row have some 4500 faces across the path of one tick: the bound stops the proxy between
-  // them, closer to the HIP than it was, and the next tick goes on from there
-  TetraMesh mesh;
-  constexpr int kBoxes = 1500;
-  for (int i = 0; i <= kBoxes; ++i) {
-    for (int corner = 0; corner < 4; ++corner) {
-      mesh.vertices.push_back({1e-3 * i, corner % 2 == 0 ? 0.0 : 1e-3, corner < 2 ? 0.0 : 1e-3});
-    }
-  }
-  // Kuhn's six tetrahedra along the paths from corner 000 to corner 111
-  constexpr int kPaths[6][2] = {{4, 1}, {4, 2}, {1, 4}, {1, 2}, {2, 4}, {2, 1}};
-  for (Index i = 0; i < kBoxes; ++i) {
-    for (int path = 0; path < 6; ++path) {
-      const Index base = 4 * i;
-      const Index one = base + static_cast<Index>(kPaths[path][0]);
-      const Index two = one + static_cast<Index>(kPaths[path][1]);
-      const Index last = base + 7;
-      mesh.cells.push_back({base, one, two, last});
-      mesh.tags.push_back(0);
-    }
-  }
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    auto& cell = mesh.cells[c];
-    const dvec3 origin = mesh.vertices[cell[0]];
-    const double volume =
-        glm::dot(mesh.vertices[cell[1]] - origin,
-                 glm::cross(mesh.vertices[cell[2]] - origin, mesh.vertices[cell[3]] - origin));
-    if (volume < 0.0) std::swap(cell[1], cell[2]);
-  }
-  Probe probe(CellComplex::build(mesh), {air()}, {1e-4, 3.1e-4, 4.7e-4});
-  const dvec3 goal{1.4999, 3.1e-4, 4.7e-4};
+  // 2000 cubes in a row have some 6000 faces across the path of one tick, and each takes two transitions: the
+  // bound stops the proxy between them, closer to the HIP than it was, and the next tick goes on from there
+  const TetraMesh row =
+      test::kuhn_grid({2000, 1, 1}, dvec3(0.0), {2.0, 1e-3, 1e-3}, [](const dvec3&) { return 0; });
+  Probe probe(CellComplex::build(row), {air()}, {1e-4, 3.1e-4, 4.7e-4});
+  const dvec3 goal{1.9999, 3.1e-4, 4.7e-4};
   probe.move_to(goal);
   EXPECT_EQ(probe.table().limited, 1U);
   EXPECT_LT(probe.proxy().position.x, goal.x);

@@ -101,6 +101,18 @@ TEST(FingertipLayout, TouchesAPlaneWithEveryHipWhenPressedOneMillimetre) {
   for (const auto& p : fingertip_layout(0.008, 0.5, 11, {0.0, 0.0, 1.0})) EXPECT_GT(p.z, 0.008 - 0.001);
 }
 
+TEST(FingertipLayout, OfTheOppositeDirectionIsItsMirrorImage) {
+  for (const glm::dvec3 direction : {glm::dvec3{0, 0, 1}, glm::dvec3{0, 1, 0}, glm::dvec3{1, 0, 0},
+                                     glm::dvec3{0, -1, 2}, glm::dvec3{1, -2, 3}}) {
+    const auto points = fingertip_layout(0.008, 0.5, 11, direction);
+    const auto facing = fingertip_layout(0.008, 0.5, 11, -direction);
+    const glm::dvec3 pole = glm::normalize(direction);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      expect_near(facing[i], points[i] - 2.0 * glm::dot(points[i], pole) * pole, 1e-17);
+    }
+  }
+}
+
 TEST(FingertipLayout, AsksOnlyTheDirectionOfItsDirection) {
   const auto unit = fingertip_layout(0.008, 0.5, 11, {0.0, 0.0, 1.0});
   for (const double length : {1e-200, 1e-3, 4.0, 1e200}) {

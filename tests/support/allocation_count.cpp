@@ -1,0 +1,35 @@
+#include "tests/support/allocation_count.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace haptic::test {
+namespace {
+
+std::atomic<std::uint64_t> count{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++count;
+  // aligned_alloc wants whole multiples of the alignment
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+std::uint64_t allocation_count() noexcept { return count; }
+
+}  // namespace haptic::test
+
+// the array and nothrow forms call these
+void* operator new(std::size_t size) { return haptic::test::counted(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return haptic::test::counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }

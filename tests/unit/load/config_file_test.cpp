@@ -1,0 +1,114 @@
+#include "load/config_file.h"
+
+#include "tests/unit/load/load_support.h"
+
+namespace haptic::load {
+namespace {
+
+LoadedConfig config_of(const std::string& text) {
+  v1::DaemonConfig message;
+  const TextSource source = parse_message(text, "/c/hapticd.txtpb", Syntax::kText, message);
+  return check_config(message, source, "/c/hapticd.txtpb");
+}
+
+LoadError error_in(const std::string& text) {
+  return error_of([&] { config_of(text); });
+}
+
+TEST(Config, LeftEmptyHasEveryDefaultOfTheSchema) {
+  const v1::DaemonConfig config = config_of("").message;
+  EXPECT_EQ(config.servo().rate_hz(), 1000.0);
+  EXPECT_EQ(config.servo().priority(), 80U);
+  EXPECT_FALSE(config.servo().has_cpu());
+  EXPECT_FALSE(config.servo().lock_memory());
+  EXPECT_EQ(config.capacity().objects(), 256U);
+  EXPECT_EQ(config.capacity().fingers(), 64U);
+  EXPECT_EQ(config.capacity().hips(), 16384U);
+  EXPECT_EQ(config.safety().max_force(), 5.0);
+  EXPECT_EQ(config.safety().max_force_rate(), 500.0);
+  EXPECT_EQ(config.safety().max_speed(), 2.0);
+  EXPECT_EQ(config.safety().arm_ramp(), 0.5);
+  EXPECT_EQ(config.safety().max_sample_age(), 0.02);
+  EXPECT_EQ(config.safety().max_missed_ticks(), 50U);
+  EXPECT_EQ(config.listen_size(), 0);
+  EXPECT_EQ(config.scene(), "");
+}
+
+TEST(Config, KeepsWhatIsGiven) {
+  const v1::DaemonConfig config =
+      config_of("servo { rate_hz: 4000 cpu: 0 } safety { max_force: 2.5 }").message;
+  EXPECT_EQ(config.servo().rate_hz(), 4000.0);
+  EXPECT_TRUE(config.servo().has_cpu());
+  EXPECT_EQ(config.safety().max_force(), 2.5);
+}
+
+TEST(Config, AcceptsTheEndsOfARangeAndRefusesWhatIsBeyond) {
+  EXPECT_EQ(config_of("servo { rate_hz: 100 priority: 1 }").message.servo().priority(), 1U);
+  EXPECT_EQ(config_of("servo { rate_hz: 8000 priority: 99 }").message.servo().rate_hz(), 8000.0);
+  EXPECT_STREQ(error_in("servo {\n  rate_hz: 8000.5\n}").what(),
+               "/c/hapticd.txtpb:2:3: servo.rate_hz: 8000.5 is out of range (permitted: 100 to 8000 Hz)");
+  EXPECT_STREQ(
+      error_in("safety { max_force: -1 }").what(),
+      "/c/hapticd.txtpb:1:10: safety.max_force: -1 is out of range (permitted: more than 0, up to 1000 N)");
+}
+
+TEST(Config, TakesPathsRelativeToItself) {
+  const v1::DaemonConfig config =
+      config_of("scene: \"scenes/a\" listen { unix { path: \"../s\" } } listen { unix { path: \"/t\" } }")
+          .message;
+  EXPECT_EQ(config.scene(), "/c/scenes/a");
+  EXPECT_EQ(config.listen(0).unix().path(), "/s");
+  EXPECT_EQ(config.listen(1).unix().path(), "/t");
+}
+
+TEST(Config, ReadsThePathsOfItsDevices) {
+  const TemporaryFolder folder;
+  folder.write("p.csv", "time,x,y,z\n0,0,0,0\n1,2,3,4\n");
+  const LoadedConfig config = load_config(folder.write(
+      "c.txtpb",
+      "device { name: \"a\" simulated { mass: 1 } } device { name: \"b\" playback { path: \"p.csv\" } }"));
+  ASSERT_EQ(config.paths.size(), 2U);
+  EXPECT_TRUE(config.paths[0].empty());
+  EXPECT_EQ(config.paths[1][1].position, glm::dvec3(2.0, 3.0, 4.0));
+}
+
+TEST(Config, TellsTheLineOfAPathThatIsWrong) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("p.csv", "time,x,y,z\n0,0,0,zero\n");
+  const auto config = folder.write("c.txtpb", "device { name: \"b\" playback { path: \"p.csv\" } }");
+  const LoadError wrong = error_of([&] { load_config(config); });
+  EXPECT_EQ(wrong.file(), path.string());
+  EXPECT_EQ(wrong.line(), 2U);
+  std::filesystem::remove(path);
+  const LoadError missing = error_of([&] { load_config(config); });
+  EXPECT_EQ(missing.file(), config.string());
+  EXPECT_EQ(missing.field(), "device[0].playback.path");
+}
+
+TEST(Config, RefusesASecondDeviceOfTheSameName) {
+  EXPECT_STREQ(
+      error_in("device { name: \"d\" simulated { mass: 1 } }\ndevice { name: \"d\" simulated { mass: 1 } }")
+          .what(),
+      "/c/hapticd.txtpb:2:10: device[1].name: \"d\" is also the name of device[0]");
+}
+
+TEST(Config, ListensToThisMachineOnly) {
+  for (const char* address : {"127.0.0.1", "127.1.2.3", "::1"}) {
+    config_of(std::string("listen { tcp { address: \"") + address + "\" port: 65535 } }");
+  }
+  for (const char* address :
+       {"0.0.0.0", "::", "10.0.0.1", "::ffff:127.0.0.1", "128.0.0.1", "127.0.0.1 ", "localhost", ""}) {
+    EXPECT_EQ(error_in(std::string("listen { tcp { address: \"") + address + "\" port: 1 } }").field(),
+              "listen[0].tcp.address");
+  }
+}
+
+TEST(Config, HoldsASocketPathThatTheSystemCanHold) {
+  // sockaddr_un has 108 bytes, one of them for the end
+  config_of("listen { unix { path: \"/" + std::string(106, 'x') + "\" } }");
+  EXPECT_EQ(error_in("listen { unix { path: \"/" + std::string(107, 'x') + "\" } }").field(),
+            "listen[0].unix.path");
+}
+
+}  // namespace
+}  // namespace haptic::load
