@@ -41,8 +41,9 @@ ROOMS = {
         ours=("daemon/servo/mailbox.h", "daemon/engine", "daemon/safety", "daemon/load", "proto", "schema"),
         libraries=("glm/", "google/protobuf/", "boost/", "spdlog/", "fmt/", "posix"),
     ),
+    "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/simulate": Room(
-        ours=("daemon/servo", "daemon/load", "daemon/engine", "daemon/safety", "drivers", "schema"),
+        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "schema"),
         libraries=("glm/", "fmt/"),
     ),
     "daemon": Room(

@@ -1,0 +1,31 @@
+#include "setup/device_set.h"
+
+#include "drivers/registry.h"
+
+namespace haptic::setup {
+
+DeviceSet::DeviceSet(const load::LoadedConfig& config) {
+  for (int i = 0; i < config.message.device_size(); ++i) {
+    const v1::Device& device = config.message.device(i);
+    owned_.push_back(drivers::make_device(device, config.paths[static_cast<std::size_t>(i)]));
+    pointers_.push_back(owned_.back().get());
+    names_.push_back(device.name());
+  }
+}
+
+DeviceSet::~DeviceSet() { stop(); }
+
+void DeviceSet::start() {
+  try {
+    for (; started_ < pointers_.size(); ++started_) pointers_[started_]->start();
+  } catch (...) {
+    stop();
+    throw;
+  }
+}
+
+void DeviceSet::stop() noexcept {
+  while (started_ > 0) pointers_[--started_]->stop();
+}
+
+}  // namespace haptic::setup
