@@ -305,7 +305,7 @@ TEST(CellComplex, BytesCountEveryTable) {
   // for each of the 6 edges of a cell, 4 B for each first
   const std::size_t stars =
       4 * (4 * complex.cells().size() + (3 + 3) * complex.faces().size() + 2 * complex.edges().size()) +
-      8 * 6 * complex.cells().size() +
+      std::size_t{8} * 6 * complex.cells().size() +
       4 * (3 * (complex.vertices().size() + 1) + 2 * (complex.edges().size() + 1));
   EXPECT_GT(complex.bytes(), records + stars);
   EXPECT_LT(complex.bytes(), records + stars + 100 * (complex.cells().size() + complex.hull_faces().size()));

@@ -140,6 +140,11 @@ TEST_P(IcosphereMesh, HasTheVolumeUnderItsTriangles) {
   EXPECT_GT(inside, ball * std::pow(inradius / radius, 3.0));
 }
 
+TEST(IcosphereMesh, OfSevenSubdivisionsHasTheCellsOfItsLevels) {
+  const std::size_t triangles = 20U << 14;
+  EXPECT_EQ(icosphere_mesh(0.02, 7, 0.0).cells.size(), 7 * (triangles - 20) / 3 + 20);
+}
+
 TEST(IcosphereMesh, WithoutSubdivisionIsTheIcosahedron) {
   const double radius = 0.03;
   // edge a = R / sin(2 pi / 5), volume 5 (3 + sqrt 5) / 12 a^3
@@ -334,7 +339,7 @@ TEST(Shapes, RefuseLengthsTooDifferentForCellsOfSomeThickness) {
 }
 
 TEST(Shapes, RefuseCountsOutOfRange) {
-  for (const int bad : {-1, 7, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
+  for (const int bad : {-1, 8, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
     expect_refusal([&] { return icosphere_mesh(1.0, bad, 0.0); }, "subdivisions");
   }
   for (const int bad : {-1, 0, 2, 4097, std::numeric_limits<int>::max()}) {
