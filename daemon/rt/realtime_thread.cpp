@@ -16,10 +16,11 @@ namespace haptic::rt {
 
 namespace {
 
-// a tick needs a few KiB. A small stack still fits when the memlock limit is the usual 8 MiB, at which a
-// default stack of 8 MiB could not be made while future memory is locked
-constexpr std::size_t kStackBytes = 512 * 1024;
-constexpr std::size_t kPrefaultedBytes = 256 * 1024;
+// a tick needs a few KiB; the thread's static data, large in a build with a sanitizer, lies here too. A small
+// stack still fits when the memlock limit is the usual 8 MiB, at which a default stack of 8 MiB could not be
+// made while future memory is locked
+constexpr std::size_t kStackBytes = 1024 * 1024;
+constexpr std::size_t kPrefaultedBytes = 128 * 1024;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
