@@ -1,0 +1,79 @@
+#include "daemon/scene_builder.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "load/error.h"
+#include "servo/prepare_scene.h"
+
+namespace haptic {
+
+namespace {
+
+v1::SceneDescription describe(const load::LoadedScene& loaded) {
+  v1::SceneDescription description;
+  *description.mutable_scene() = loaded.message;
+  for (const engine::Object& object : loaded.scene.objects) {
+    v1::SceneDescription::ObjectDescription& told = *description.add_object();
+    told.set_name(object.name);
+    told.set_cells(static_cast<std::uint32_t>(object.cells->cells().size()));
+    told.set_vertices(static_cast<std::uint32_t>(object.cells->vertices().size()));
+    told.set_bytes(object.cells->bytes());
+    told.set_mass(object.dynamic ? object.dynamics.mass.mass : 0.0);
+  }
+  for (const engine::Finger& finger : loaded.scene.fingers) {
+    v1::SceneDescription::FingerDescription& told = *description.add_finger();
+    told.set_name(finger.name);
+    told.set_device(finger.device);
+    told.set_first_hip(static_cast<std::uint32_t>(finger.first_hip));
+    told.set_hips(static_cast<std::uint32_t>(finger.hips.size()));
+  }
+  return description;
+}
+
+v1::Error to_wire(const load::LoadError& error) {
+  v1::Error wire;
+  wire.set_code(v1::Error::INVALID);
+  wire.set_message(error.message());
+  wire.set_field(error.field());
+  wire.set_file(error.file());
+  wire.set_line(error.line());
+  wire.set_column(error.column());
+  return wire;
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(v1::Capacity capacity, std::vector<std::string> devices)
+    : capacity_(std::move(capacity)), devices_(std::move(devices)) {}
+
+ipc::BuiltScene SceneBuilder::from_file(const std::string& file) const {
+  return finish(file.empty() ? std::make_shared<const load::LoadedScene>()
+                             : load::load_scene(file, capacity_));
+}
+
+ipc::BuiltScene SceneBuilder::from_request(const v1::LoadScene& request) const {
+  try {
+    if (request.has_scene()) return finish(load::build_scene(request.scene(), capacity_));
+    std::error_code ignored;
+    if (std::filesystem::exists(request.path(), ignored) && !request.path().empty()) {
+      return from_file(request.path());
+    }
+  } catch (const load::LoadError& error) {
+    throw ipc::SceneError(to_wire(error));
+  }
+  v1::Error missing;
+  missing.set_code(v1::Error::NOT_FOUND);
+  missing.set_message("there is no such file on the daemon's machine");
+  missing.set_file(request.path());
+  throw ipc::SceneError(std::move(missing));
+}
+
+ipc::BuiltScene SceneBuilder::finish(const std::shared_ptr<const load::LoadedScene>& loaded) const {
+  constexpr std::uint64_t kNotYetNumbered = 0;
+  const std::shared_ptr<const engine::Scene> scene(loaded, &loaded->scene);
+  return {.prepared = servo::prepare_scene(scene, kNotYetNumbered, devices_),
+          .description = describe(*loaded)};
+}
+
+}  // namespace haptic

@@ -1,0 +1,32 @@
+#pragma once
+// From a scene that somebody asks for to one that the servo thread can run, with what is told about it.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptic/v1/control.pb.h"
+#include "ipc/services.h"
+#include "load/scene_file.h"
+
+namespace haptic {
+
+class SceneBuilder {
+ public:
+  /// `devices` are the names in the order of the device set.
+  SceneBuilder(v1::Capacity capacity, std::vector<std::string> devices);
+
+  /// The scene of a file; an empty scene if `file` is empty. Throws load::LoadError.
+  ipc::BuiltScene from_file(const std::string& file) const;
+
+  /// What a client asks for. Throws ipc::SceneError. Any thread.
+  ipc::BuiltScene from_request(const v1::LoadScene& request) const;
+
+ private:
+  ipc::BuiltScene finish(const std::shared_ptr<const load::LoadedScene>& loaded) const;
+
+  v1::Capacity capacity_;
+  std::vector<std::string> devices_;
+};
+
+}  // namespace haptic
