@@ -2,34 +2,15 @@
 // A daemon in this process: the real server on a socket in a directory of its own, with a fake servo behind
 // it. Its scene has one object, "block", and one finger of two HIPs, "thumb", on the device "left".
 
-#include <stdlib.h>
-
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include "ipc/server.h"
 #include "tests/support/fake_servo.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptic::test {
-
-/// A new directory under /tmp that goes away with its contents.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = "/tmp/haptic-test-XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  ~TemporaryDirectory() { std::filesystem::remove_all(path_); }
-
-  const std::string& path() const noexcept { return path_; }
-
- private:
-  std::string path_;
-};
 
 inline v1::SceneDescription example_scene() {
   v1::SceneDescription scene;
@@ -80,7 +61,7 @@ class TestDaemon {
             servo::Capacity{.objects = 8, .fingers = 2, .hips = 4096, .contacts = 64, .devices = 2})),
         servo_(*mailbox_) {
     if (settings.listen.empty()) {
-      settings.listen.emplace_back().mutable_unix()->set_path(directory_.path() + "/hapticd.sock");
+      settings.listen.emplace_back().mutable_unix()->set_path(folder_.file("hapticd.sock"));
     }
     ipc::Services services{.mailbox = *mailbox_,
                            .version = "9.9",
@@ -111,10 +92,10 @@ class TestDaemon {
   FakeServo& servo() noexcept { return servo_; }
   servo::Mailbox& mailbox() noexcept { return *mailbox_; }
   const std::string& address() const noexcept { return server_->addresses().front(); }
-  const std::string& directory() const noexcept { return directory_.path(); }
+  const TemporaryFolder& folder() const noexcept { return folder_; }
 
  private:
-  TemporaryDirectory directory_;
+  TemporaryFolder folder_;
   std::unique_ptr<servo::Mailbox> mailbox_;
   FakeServo servo_;
   std::unique_ptr<ipc::Server> server_;

@@ -65,10 +65,10 @@ class ScriptedDaemon {
     ::close(socket_);
   }
 
-  std::string path() const { return directory_.path() + "/s"; }
+  std::string path() const { return folder_.file("s"); }
 
  private:
-  test::TemporaryDirectory directory_;
+  test::TemporaryFolder folder_;
   int socket_ = -1;
   std::thread thread_;
 };
@@ -96,8 +96,8 @@ TEST(Connection, SaysWhatToDoWhenThereIsNoDaemon) {
 }
 
 TEST(Connection, SaysWhatToDoWhenADaemonHasDied) {
-  const test::TemporaryDirectory directory;
-  const std::string path = directory.path() + "/dead.sock";
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("dead.sock");
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
   path.copy(name.sun_path, sizeof(name.sun_path) - 1);

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 
 #include <atomic>
-#include <fstream>
 #include <thread>
 
 #include "haptic/v1/control.pb.h"
@@ -182,8 +181,7 @@ TEST_F(Hapticctl, ShowsAndLoadsScenes) {
       contains(bad.output, "/relative.scene.txtpb:7:3: object[0].shape.box.size.x: 0 is out of range"))
       << bad.output;
 
-  const std::string path = daemon_->directory() + "/good.scene.txtpb";
-  std::ofstream(path) << "name: \"good\"\n";
+  const std::string path = daemon_->folder().write("good.scene.txtpb", "name: \"good\"\n");
   const Finished good = ctl("scene load --send " + path);
   EXPECT_EQ(good.code, 0) << good.output;
   EXPECT_EQ(good.output, "loaded good (revision 2): 0 objects, 0 fingers, 0 HIPs\n");
@@ -193,8 +191,7 @@ TEST_F(Hapticctl, ShowsAndLoadsScenes) {
 TEST_F(Hapticctl, TellsWhereASceneTextIsWrong) {
   serve();
   EXPECT_EQ(ctl("scene load --send /nowhere.scene.txtpb").code, 3);
-  const std::string path = daemon_->directory() + "/bad.scene.txtpb";
-  std::ofstream(path) << "name: \"bad\"\nobjekt {}\n";
+  const std::string path = daemon_->folder().write("bad.scene.txtpb", "name: \"bad\"\nobjekt {}\n");
   const Finished bad = ctl("scene load --send " + path);
   EXPECT_EQ(bad.code, 1);
   EXPECT_TRUE(contains(bad.output, "bad.scene.txtpb:2:")) << bad.output;

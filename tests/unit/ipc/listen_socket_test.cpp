@@ -47,8 +47,8 @@ int foreign_socket(const std::string& path) {
 
 class UnixListenerTest : public testing::Test {
  protected:
-  test::TemporaryDirectory directory_;
-  std::string path_ = directory_.path() + "/hapticd.sock";
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.file("hapticd.sock");
 };
 
 TEST_F(UnixListenerTest, RefusesASecondDaemonInWords) {
@@ -82,8 +82,8 @@ TEST_F(UnixListenerTest, LeavesAFileThatIsNoSocketAlone) {
 
 TEST_F(UnixListenerTest, NamesADirectoryThatIsNotThere) {
   const std::string error =
-      error_of([&] { const UnixListener listener(at(directory_.path() + "/not/there.sock")); });
-  EXPECT_TRUE(contains(error, "there is no directory " + directory_.path() + "/not")) << error;
+      error_of([&] { const UnixListener listener(at(folder_.file("not/there.sock"))); });
+  EXPECT_TRUE(contains(error, "there is no directory " + folder_.file("not"))) << error;
 }
 
 TEST_F(UnixListenerTest, RefusesAPathThatIsTooLong) {
@@ -123,16 +123,16 @@ TEST_F(UnixListenerTest, RemovesItsSocketInTheEnd) {
 }
 
 TEST(DefaultSocketPath, IsMadePrivateWhereThereIsNoRuntimeDirectory) {
-  const test::TemporaryDirectory directory;
+  const test::TemporaryFolder folder;
   ::unsetenv("HAPTICD_SOCKET");
   ::unsetenv("RUNTIME_DIRECTORY");
-  ::setenv("XDG_RUNTIME_DIR", directory.path().c_str(), 1);
-  EXPECT_EQ(default_socket_path(), directory.path() + "/hapticd/hapticd.sock");
+  ::setenv("XDG_RUNTIME_DIR", folder.file("").c_str(), 1);
+  EXPECT_EQ(default_socket_path(), folder.file("") + "/hapticd/hapticd.sock");
   struct stat status {};
-  ASSERT_EQ(::stat((directory.path() + "/hapticd").c_str(), &status), 0);
+  ASSERT_EQ(::stat(folder.file("hapticd").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0700U);
 
-  ASSERT_EQ(::chmod((directory.path() + "/hapticd").c_str(), 0777), 0);
+  ASSERT_EQ(::chmod(folder.file("hapticd").c_str(), 0777), 0);
   EXPECT_THROW(default_socket_path(), ListenError);
   ::unsetenv("XDG_RUNTIME_DIR");
 }
