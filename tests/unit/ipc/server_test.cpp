@@ -165,6 +165,38 @@ TEST(Server, TellsWhereASceneIsWrongAndKeepsTheOldOne) {
   EXPECT_EQ(scene.scene().revision(), 1U);
 }
 
+TEST(Server, EditsTheSceneAndTellsEverybody) {
+  TestDaemon daemon;
+  Connection client(at(daemon));
+  const v1::Response response = ask(client, [](v1::Request& request) {
+    request.mutable_edit_scene()->set_expected_revision(1);
+    request.mutable_edit_scene()->add_edit()->mutable_set_gravity()->set_z(-9.81);
+  });
+  EXPECT_EQ(response.scene().revision(), 2U);
+  EXPECT_EQ(response.scene().scene().name(), "example");
+  EXPECT_EQ(response.scene().scene().gravity().z(), -9.81);
+  const auto event = client.receive(std::chrono::seconds(5));
+  ASSERT_TRUE(event && event->has_event());
+  EXPECT_EQ(event->event().kind(), v1::Event::SCENE_CHANGED);
+  EXPECT_EQ(event->event().scene_revision(), 2U);
+}
+
+TEST(Server, RefusesAnEditOfARevisionThatDoesNotRun) {
+  TestDaemon daemon;
+  RawClient client(daemon.address());
+  client.say_hello();
+  ASSERT_TRUE(client.receive());
+  client.request([](v1::Request& request) {
+    request.set_id(5);
+    request.mutable_edit_scene()->set_expected_revision(7);
+    request.mutable_edit_scene()->add_edit()->mutable_set_gravity();
+  });
+  const auto answer = client.receive();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->response().error().code(), v1::Error::BUSY);
+  EXPECT_EQ(answer->response().error().field(), "expected_revision");
+}
+
 // frames of 4096 HIPs have about 200 kB: a client that does not read is soon behind
 void publish_large(TestDaemon& daemon, std::uint64_t tick) {
   daemon.servo().publish(tick, [](servo::Snapshot& snapshot) { snapshot.hips.resize(4096); });

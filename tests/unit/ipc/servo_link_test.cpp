@@ -37,6 +37,15 @@ TEST(ServoLink, GivesEachAnswerToTheOneWhoAsked) {
   EXPECT_EQ(second, (std::vector<Outcome>{Outcome::kFaultRefused}));
 }
 
+TEST(ServoLink, TellsThatAnEditIsOutdated) {
+  Link link;
+  std::vector<Outcome> outcomes;
+  link.link.submit({}, link.start, [&](Outcome outcome) { outcomes.push_back(outcome); });
+  link.mailbox->events.push({.kind = servo::EventKind::kOutdated, .request = 1});
+  link.link.poll(link.start);
+  EXPECT_EQ(outcomes, (std::vector<Outcome>{Outcome::kOutdated}));
+}
+
 TEST(ServoLink, GivesUpAfterItsPatienceAndIgnoresALateAnswer) {
   Link link;
   std::vector<Outcome> outcomes;
