@@ -19,8 +19,8 @@ namespace {
 // a tick needs a few KiB; the thread's static data, large in a build with a sanitizer, lies here too. A small
 // stack still fits when the memlock limit is the usual 8 MiB, at which a default stack of 8 MiB could not be
 // made while future memory is locked
-constexpr std::size_t kStackBytes = 1024 * 1024;
-constexpr std::size_t kPrefaultedBytes = 128 * 1024;
+constexpr std::size_t kStackBytes = std::size_t{1} << 20U;
+constexpr std::size_t kPrefaultedBytes = std::size_t{1} << 17U;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
