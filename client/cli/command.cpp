@@ -7,10 +7,11 @@
 
 namespace haptic::cli {
 
-client::Connection Command::connect() const {
+client::Connection Command::connect(std::chrono::milliseconds patience) const {
   client::Options options;
   options.address = address;
   options.program = "hapticctl";
+  options.timeout = patience;
   return client::Connection(options);
 }
 

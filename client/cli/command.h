@@ -2,6 +2,7 @@
 // What one run of hapticctl is: the options that every verb has, the verb that was chosen, and how it speaks.
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <functional>
 #include <string>
 
@@ -18,8 +19,8 @@ struct Command {
   bool json = false;    // --json
   Action action;        // of the verb that was chosen
 
-  /// Throws client::Error.
-  client::Connection connect() const;
+  /// `patience`: for connecting, and for each answer. Throws client::Error.
+  client::Connection connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
 };
 
 /// Adds a verb that runs `action`. It has --json and --socket as hapticctl itself does, so that they may

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "client/cli/describe.h"
@@ -28,10 +29,12 @@ ExitCode resume(Command& command) {
 }
 
 ExitCode step(Command& command, std::uint64_t ticks) {
-  client::Connection daemon = command.connect();
+  // the daemon answers when they have run, at 100 Hz in the slowest case
+  client::Connection daemon =
+      command.connect(std::chrono::seconds(10 + std::min<std::uint64_t>(ticks / 100, 3600)));
   return report(command,
                 call(daemon, [ticks](v1::Request& request) { request.mutable_step()->set_ticks(ticks); }),
-                "running " + count_of(ticks, "tick") + ", then paused");
+                "ran " + count_of(ticks, "tick") + "; paused");
 }
 
 }  // namespace

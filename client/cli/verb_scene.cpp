@@ -55,7 +55,7 @@ ExitCode show(Command& command) {
 }
 
 ExitCode load(Command& command, const std::string& path, bool send) {
-  client::Connection daemon = command.connect();
+  client::Connection daemon = command.connect(std::chrono::minutes(2));
   const v1::Response response = call(daemon, [&](v1::Request& request) {
     if (send) {
       *request.mutable_load_scene()->mutable_scene() = read_scene_text(path);

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "client/lib/error.h"
@@ -21,6 +22,8 @@ namespace haptic::client {
 namespace {
 
 using Outcome = StreamSocket::Outcome;
+
+constexpr std::chrono::milliseconds kFullPause{5};
 
 // waits until the socket can be read or written, or is broken
 Outcome wait_for(int descriptor, short events, Clock::time_point deadline) noexcept {
@@ -35,14 +38,7 @@ Outcome wait_for(int descriptor, short events, Clock::time_point deadline) noexc
   return ready == 0 ? Outcome::kTimedOut : Outcome::kInterrupted;
 }
 
-// errno of the attempt, 0 if it succeeded
-int try_connect(int descriptor, const sockaddr* address, socklen_t size, Clock::time_point deadline) {
-  if (::connect(descriptor, address, size) == 0) {
-    return 0;
-  }
-  if (errno != EINPROGRESS) {
-    return errno;
-  }
+int finish_connect(int descriptor, Clock::time_point deadline) {
   Outcome outcome = Outcome::kInterrupted;
   while (outcome == Outcome::kInterrupted) {
     outcome = wait_for(descriptor, POLLOUT, deadline);
@@ -54,6 +50,21 @@ int try_connect(int descriptor, const sockaddr* address, socklen_t size, Clock::
   socklen_t length = sizeof(error);
   ::getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &error, &length);
   return error;
+}
+
+// errno of the attempt, 0 if it succeeded
+int try_connect(int descriptor, const sockaddr* address, socklen_t size, Clock::time_point deadline) {
+  while (::connect(descriptor, address, size) != 0) {
+    if (errno == EAGAIN && Clock::now() < deadline) {
+      std::this_thread::sleep_for(kFullPause);  // too many wait to be accepted by a Unix socket
+      continue;
+    }
+    if (errno != EINPROGRESS) {
+      return errno;
+    }
+    return finish_connect(descriptor, deadline);
+  }
+  return 0;
 }
 
 std::string advice(int error) {

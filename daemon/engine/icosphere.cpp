@@ -17,7 +17,7 @@
 namespace haptic::engine {
 namespace {
 
-constexpr int kMaxSubdivisions = 6;
+constexpr int kMaxSubdivisions = 7;
 
 /// Thickness of a layer between level k - 1 and level k, times 2^k, over the radius of level k: about three
 /// quarters of an edge, for cells about as thick as wide.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 
 #include "ipc/convert.h"
 #include "ipc/handlers.h"
@@ -35,6 +36,13 @@ servo::Command command_of(const v1::Request& request) noexcept {
   return command;
 }
 
+// a step is answered when its ticks have run; nobody waits for more than an hour of them
+std::chrono::milliseconds time_of(const servo::Command& command, double rate_hz) noexcept {
+  constexpr double kHour = 3600e3;
+  const double time_ms = 1e3 * static_cast<double>(command.ticks) / rate_hz;
+  return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(time_ms, kHour)));
+}
+
 std::string nothing_to_do(v1::Request::CallCase call) {
   switch (call) {
     case v1::Request::kArm:
@@ -68,24 +76,26 @@ std::string name_fault(const Desk& desk) {
 void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Request& request,
                           const Reply& reply) {
   const v1::Request::CallCase call = request.call_case();
+  const servo::Command command = command_of(request);
+  const auto on_answer = [&desk, call, reply](Outcome outcome) {
+    switch (outcome) {
+      case Outcome::kDone:
+        reply.done();
+        break;
+      case Outcome::kNothingToDo:
+        reply.fail(v1::Error::NOTHING_TO_DO, nothing_to_do(call));
+        break;
+      case Outcome::kFaultRefused:
+        reply.fail(v1::Error::FAULT_LATCHED,
+                   "a fault is latched" + name_fault(desk) + "; find its cause, then clear it");
+        break;
+      case Outcome::kNoAnswer:
+        reply.fail(v1::Error::FAILED, "the servo thread does not answer");
+        break;
+    }
+  };
   const bool sent =
-      desk.servo.submit(command_of(request), SteadyClock::now(), [&desk, call, reply](Outcome outcome) {
-        switch (outcome) {
-          case Outcome::kDone:
-            reply.done();
-            break;
-          case Outcome::kNothingToDo:
-            reply.fail(v1::Error::NOTHING_TO_DO, nothing_to_do(call));
-            break;
-          case Outcome::kFaultRefused:
-            reply.fail(v1::Error::FAULT_LATCHED,
-                       "a fault is latched" + name_fault(desk) + "; find its cause, then clear it");
-            break;
-          case Outcome::kNoAnswer:
-            reply.fail(v1::Error::FAILED, "the servo thread does not answer");
-            break;
-        }
-      });
+      desk.servo.submit(command, SteadyClock::now(), on_answer, time_of(command, desk.services.rate_hz));
   if (!sent) {
     reply.fail(v1::Error::BUSY, "the servo thread has too many commands waiting; try again");
   }

@@ -27,20 +27,14 @@ bool is_answer(servo::EventKind kind) noexcept {
 ServoLink::ServoLink(servo::Mailbox& mailbox, std::chrono::milliseconds patience, OnEvent on_event)
     : mailbox_(mailbox), patience_(patience), on_event_(std::move(on_event)) {}
 
-ServoLink::~ServoLink() {
-  servo::Event event;
-  while (mailbox_.events.pop(event)) {
-    const std::unique_ptr<servo::PreparedScene> retired(event.scene);
-  }
-}
-
-bool ServoLink::submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer) {
+bool ServoLink::submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer,
+                       std::chrono::milliseconds takes) {
   command.request = last_request_ + 1;
   if (!mailbox_.commands.push(command)) {
     return false;
   }
   ++last_request_;
-  pending_.emplace(last_request_, Pending{now + patience_, std::move(on_answer)});
+  pending_.emplace(last_request_, Pending{now + patience_ + takes, std::move(on_answer)});
   return true;
 }
 
@@ -49,9 +43,13 @@ void ServoLink::poll(SteadyClock::time_point now) {
   while (mailbox_.events.pop(event)) {
     take(event);
   }
-  while (!pending_.empty() && pending_.begin()->second.deadline <= now) {
-    const OnAnswer on_answer = std::move(pending_.begin()->second.on_answer);
-    pending_.erase(pending_.begin());
+  for (auto entry = pending_.begin(); entry != pending_.end();) {
+    if (entry->second.deadline > now) {
+      ++entry;
+      continue;
+    }
+    const OnAnswer on_answer = std::move(entry->second.on_answer);
+    entry = pending_.erase(entry);
     on_answer(Outcome::kNoAnswer);
   }
 }

@@ -22,14 +22,12 @@ class ServoLink {
 
   /// `on_event` sees every event but kSceneRetired, answers too, and before the one who asked does.
   ServoLink(servo::Mailbox& mailbox, std::chrono::milliseconds patience, OnEvent on_event);
-  /// Frees what waits in the event queue.
-  ~ServoLink();
-  ServoLink(const ServoLink&) = delete;
-  ServoLink& operator=(const ServoLink&) = delete;
 
   /// Sends a command; its request number is chosen here. False if the queue is full, and then nothing was
-  /// sent. Without an answer in time, `on_answer` gets kNoAnswer.
-  bool submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer);
+  /// sent. Without an answer within the patience and what the command itself takes, `on_answer` gets
+  /// kNoAnswer.
+  bool submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer,
+              std::chrono::milliseconds takes = std::chrono::milliseconds(0));
 
   /// Takes what the servo thread has sent. To be called every few milliseconds.
   void poll(SteadyClock::time_point now);
@@ -46,7 +44,7 @@ class ServoLink {
   std::chrono::milliseconds patience_;
   OnEvent on_event_;
   std::uint64_t last_request_ = 0;
-  std::map<std::uint64_t, Pending> pending_;  // by request; deadlines ascend with it
+  std::map<std::uint64_t, Pending> pending_;  // by request
 };
 
 }  // namespace haptic::ipc
