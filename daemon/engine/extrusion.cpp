@@ -50,7 +50,7 @@ class Disc {
   explicit Disc(int segments) : segments_(segments) {}
 
   Ring add_ring(std::vector<Index> steps, double radius) {
-    const Ring ring{static_cast<Index>(plane_.points.size()), std::move(steps), radius};
+    Ring ring{static_cast<Index>(plane_.points.size()), std::move(steps), radius};
     for (const Index step : ring.steps) {
       const SinCos angle = sin_cos(2.0 * kPi * step / segments_);
       plane_.points.emplace_back(radius * angle.cosine, radius * angle.sine);

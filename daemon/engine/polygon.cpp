@@ -21,6 +21,9 @@ using glm::dvec2;
 /// far below the clearance of the outline.
 constexpr double kSlackRatio = 1e-9;
 
+/// An edge longer than this many times the mean of its outline is divided.
+constexpr double kLongestEdge = 4.0;
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -126,6 +129,22 @@ class EarCutter {
   std::size_t first_ = 0;
 };
 
+/// One long edge that faces many short ones would make its ends the tips of all their triangles.
+std::vector<dvec2> with_long_edges_divided(std::span<const dvec2> outline) {
+  double perimeter = 0.0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    perimeter += glm::distance(outline[i], outline[(i + 1) % outline.size()]);
+  }
+  const double longest = kLongestEdge * perimeter / static_cast<double>(outline.size());
+  std::vector<dvec2> points;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const dvec2 edge = outline[(i + 1) % outline.size()] - outline[i];
+    const double parts = std::max(1.0, std::ceil(glm::length(edge) / longest));
+    for (double part = 0.0; part < parts; ++part) points.push_back(outline[i] + part / parts * edge);
+  }
+  return points;
+}
+
 /// Adds the corners of a rectangle and returns the loop around what is left of it outside the outline: along
 /// the rectangle, over a bridge to the outline, clockwise around that, and back over the bridge.
 std::vector<Index> loop_around(std::vector<dvec2>& points, const std::vector<Index>& outline,
@@ -175,24 +194,27 @@ void check_simple(std::span<const dvec2> outline, double clearance) {
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
-    const dvec2& a = outline[i];
-    const dvec2& b = outline[(i + 1) % n];
+    const std::size_t end = (i + 1) % n;
     for (std::size_t j = 0; j < n; ++j) {
-      if (j == i || j == (i + 1) % n) continue;
-      require(distance_to_segment(outline[j], a, b) >= clearance, "outline: point ", j,
-              " lies on the edge from point ", i, " to ", (i + 1) % n);
-      const std::size_t end = (j + 1) % n;
-      if (j < i || end == i) continue;
-      require(!cross_each_other(a, b, outline[j], outline[end]), "outline: the edges from point ", i, " to ",
-              (i + 1) % n, " and from ", j, " to ", end, " cross");
+      if (j == i || j == end) continue;
+      require(distance_to_segment(outline[j], outline[i], outline[end]) >= clearance, "outline: point ", j,
+              " lies on the edge from point ", i, " to ", end);
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t end = (i + 1) % n;
+    for (std::size_t j = i + 2; j < n; ++j) {
+      const std::size_t other_end = (j + 1) % n;
+      require(other_end == i || !cross_each_other(outline[i], outline[end], outline[j], outline[other_end]),
+              "outline: the edges from point ", i, " to ", end, " and from ", j, " to ", other_end, " cross");
     }
   }
 }
 
 PlaneMesh triangulate(std::span<const dvec2> outline, double air_margin) {
   PlaneMesh mesh;
-  mesh.points.assign(outline.begin(), outline.end());
-  std::vector<Index> loop(outline.size());
+  mesh.points = with_long_edges_divided(outline);
+  std::vector<Index> loop(mesh.points.size());
   std::iota(loop.begin(), loop.end(), 0U);
   if (signed_area(outline) < 0.0) std::reverse(loop.begin(), loop.end());
 

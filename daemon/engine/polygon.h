@@ -35,8 +35,9 @@ void check_simple(std::span<const glm::dvec2> outline, double clearance);
 /// Positive for a counter-clockwise outline, m^2.
 double signed_area(std::span<const glm::dvec2> outline);
 
-/// Cuts the inside of a checked outline into triangles, and with air_margin > 0 also what lies between it and
-/// the rectangle around it at that distance. The outline's points come first, in their order.
+/// Cuts the inside of a simple outline into triangles, and with air_margin > 0 also what lies between it and
+/// the rectangle around it at that distance. Edges much longer than the mean are divided; all others stay
+/// whole.
 PlaneMesh triangulate(std::span<const glm::dvec2> outline, double air_margin);
 
 }  // namespace haptic::engine

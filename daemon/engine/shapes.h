@@ -25,7 +25,7 @@ TetraMesh box_mesh(const glm::dvec3& size, double air_margin);
 
 /// A sphere of 20 * 4^subdivisions triangles (0 to 7) with its vertices at `radius`. The outside ends at an
 /// icosphere of the same or fewer subdivisions with its vertices at radius + air_margin, and is nowhere
-/// thinner than three quarters of the margin.
+/// thinner than nine tenths of the margin (three quarters below two subdivisions).
 TetraMesh icosphere_mesh(double radius, int subdivisions, double air_margin);
 
 /// A cylinder along z of `segments` (3 to 4096) sides, with its edges at `radius`. The outside ends at a

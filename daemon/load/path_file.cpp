@@ -48,7 +48,8 @@ class PathReader {
 
  private:
   [[noreturn]] void fail(std::size_t column, std::string_view field, const std::string& message) const {
-    throw LoadError({file_, std::max(line_, 1U), static_cast<std::uint32_t>(column), std::string(field)}, message);
+    throw LoadError({file_, std::max(line_, 1U), static_cast<std::uint32_t>(column), std::string(field)},
+                    message);
   }
 
   static bool trimmed_is_empty(std::string_view text) {

@@ -37,13 +37,13 @@ void step(const std::shared_ptr<const haptic::load::LoadedScene>& loaded) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace haptic;
-  static const v1::Capacity kCapacity = load::default_capacity();
+  static const v1::Capacity capacity = load::default_capacity();
   const std::string text = fuzz::text_of(data, size);
   try {
     v1::Scene message;
     const load::TextSource source = load::parse_message(text, "f", fuzz::syntax_of(text), message);
     if (is_large(message)) return 0;
-    step(load::build_scene(std::move(message), source, nullptr, kCapacity));
+    step(load::build_scene(std::move(message), source, nullptr, capacity));
   } catch (const load::LoadError&) {
     return 0;
   }

@@ -38,7 +38,7 @@ ROOMS = {
         libraries=("glm/", "google/protobuf/", "fmt/", "posix"),
     ),
     "daemon/ipc": Room(
-        ours=("daemon/servo/mailbox.h", "daemon/engine", "daemon/safety", "daemon/load", "proto", "schema"),
+        ours=("daemon/servo/mailbox.h", "daemon/engine", "daemon/safety", "daemon/load/error.h", "proto", "schema"),
         libraries=("glm/", "google/protobuf/", "boost/", "spdlog/", "fmt/", "posix"),
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),

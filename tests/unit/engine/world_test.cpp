@@ -1,72 +1,33 @@
-// Invariants: what the fingers feel the bodies get, reversed; a step is a function of scene, state, fingers
-// and dt alone; no input makes the state something other than finite numbers.
+// Invariants: what the fingers feel the bodies get, reversed; no input makes the state something other than
+// finite numbers.
 
 #include "engine/world.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <string>
 
-#include "engine/portable_math.h"
-#include "engine/shapes.h"
-#include "tests/support/allocation_count.h"
 #include "tests/support/expect_vector.h"
-#include "tests/support/probe.h"
+#include "tests/support/small_world.h"
 
 namespace haptic::engine {
 namespace {
 
 using glm::dvec3;
-using test::air;
+using test::at;
+using test::cube;
+using test::finger_of;
+using test::kDt;
+using test::kStiffness;
 using test::near;
 using test::rigid;
-
-constexpr double kDt = 1e-3;
-constexpr double kStiffness = 100.0;  // N/m
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// A cube of 40 mm in 20 mm of air around the world's origin, 64 g if it is of test::rigid. `shift` is where
-/// it stands in its own frame.
-Object cube(const Material& solid, bool dynamic, const Pose& shift = {}) {
-  TetraMesh mesh = box_mesh({0.04, 0.04, 0.04}, 0.02);
-  for (dvec3& vertex : mesh.vertices) vertex = shift * vertex;
-  Object object;
-  object.name = "cube";
-  object.cells = std::make_shared<CellComplex>(CellComplex::build(mesh));
-  object.materials = {air(), solid};
-  object.initial_pose = inverse(shift);
-  object.dynamic = dynamic;
-  if (dynamic) object.dynamics.mass = mass_properties(*object.cells, object.materials);
-  return object;
-}
-
-Finger finger_of(const std::vector<dvec3>& hips) { return {"finger", "device", kStiffness, hips, 0}; }
-
-World world_of(std::vector<Object> objects, std::vector<Finger> fingers, const dvec3& gravity = dvec3{0.0}) {
-  auto scene = std::make_shared<Scene>();
-  scene->gravity = gravity;
-  scene->objects = std::move(objects);
-  scene->fingers = std::move(fingers);
-  number_hips(*scene);
-  return World(scene);
-}
-
-FingerPose at(const dvec3& position, const dvec3& turn = dvec3{0.0}) {
-  return {{position, rotation_by(turn)}, true};
-}
-
-void step(World& world, const FingerPose& finger) { world.step({&finger, 1}, kDt); }
-
-/// A stroke that pokes the cube on several sides, slides over edges and lets go at times.
-FingerPose stroke(int tick) {
-  const double t = tick * kDt;
-  const double reach = 0.024 + 0.007 * std::sin(7.0 * t);
-  return at({reach * std::cos(2.0 * t), reach * std::sin(2.0 * t), 0.006 * std::sin(3.0 * t)},
-            {0.3 * std::sin(t), 0.2, t});
-}
+using test::run;
+using test::step;
+using test::stroke;
+using test::two_fingers_two_objects;
+using test::world_of;
 
 TEST(World, StillHipIsMetByAMovingObject) {
   // a frictionless cube slides at 0.1 m/s into a HIP 10 mm before its face: from there on it is a mass on a
@@ -263,7 +224,8 @@ TEST(World, TreatsABrokenPoseAsAnAbsentFinger) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double largest = std::numeric_limits<double>::max();
   int tick = 0;
-  for (const double bad : {kNan, infinity, -infinity, largest, 1e150, -1e7}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, largest, 1e150, -1e7}) {
     for (int field = 0; field < 7; ++field) {
       for (int i = 0; i < 40; ++i) step(world, stroke(tick++));
       FingerPose broken = stroke(tick++);
@@ -334,78 +296,6 @@ TEST(World, DoesFarFromAnObjectWhatTheStateMachineWouldDo) {
   EXPECT_EQ(world.transitions().count, table.count);
   EXPECT_GT(outside, 2000);
   EXPECT_LT(outside, 18000);
-}
-
-World two_fingers_two_objects() {
-  Object other = cube(rigid(1.0, 0.5), true);
-  other.initial_pose = {{0.03, 0.03, 0.0}, rotation_by({0.3, 0.2, 0.1})};
-  other.dynamics.angular_viscosity = 1e-5;
-  other.dynamics.linear_viscosity = 0.1;
-  return world_of({cube(rigid(0.8, 0.5), true), other},
-                  {finger_of(fingertip_layout(0.006, 1.0, 7, {1, 0, 0})), finger_of(point_layout())},
-                  {0.0, -0.1, 0.0});
-}
-
-void run(World& world, int from, int to) {
-  for (int i = from; i < to; ++i) {
-    const std::array fingers{stroke(i), stroke(3 * i + 1000)};
-    world.step(fingers, kDt);
-  }
-}
-
-TEST(World, RepeatsItselfToTheBit) {
-  World a = two_fingers_two_objects();
-  World b = two_fingers_two_objects();
-  run(a, 0, 1000);
-  run(b, 0, 1000);
-  EXPECT_EQ(hash(a.state()), hash(b.state()));
-  EXPECT_NE(hash(a.state()), hash(two_fingers_two_objects().state()));
-  EXPECT_EQ(a.transitions().count, b.transitions().count);
-}
-
-TEST(World, GoesOnFromACopyOfItsState) {
-  World a = two_fingers_two_objects();
-  run(a, 0, 500);
-  const State copy = a.state();
-  run(a, 500, 1000);
-  World b = two_fingers_two_objects();
-  ASSERT_TRUE(b.restore(copy));
-  run(b, 500, 1000);
-  EXPECT_EQ(hash(a.state()), hash(b.state()));
-}
-
-TEST(World, RefusesTheStateOfAnotherScene) {
-  World a = two_fingers_two_objects();
-  const std::uint64_t before = hash(a.state());
-  EXPECT_FALSE(a.restore(State{}));
-  const World other = world_of({cube(rigid(), true)}, {finger_of(point_layout())});
-  EXPECT_FALSE(a.restore(other.state()));
-  EXPECT_EQ(hash(a.state()), before);
-}
-
-TEST(World, ResetsToTheStart) {
-  World world = two_fingers_two_objects();
-  const std::uint64_t start = hash(world.state());
-  run(world, 0, 600);
-  const std::uint64_t once = hash(world.state());
-  world.reset();
-  EXPECT_EQ(hash(world.state()), start);
-  EXPECT_EQ(world.transitions().count, TransitionTable{}.count);
-  run(world, 0, 600);
-  EXPECT_EQ(hash(world.state()), once);
-}
-
-TEST(World, StepsResetsAndRestoresWithoutTheHeap) {
-  World world = two_fingers_two_objects();
-  const State copy = world.state();
-  const std::uint64_t before = test::allocation_count();
-  ASSERT_GT(before, 0U);
-  run(world, 0, 600);
-  static_cast<void>(hash(world.state()));
-  world.reset();
-  world.restore(copy);
-  run(world, 0, 600);
-  EXPECT_EQ(test::allocation_count(), before);
 }
 
 TEST(World, TellsWhereAProxyIsInTheWorld) {

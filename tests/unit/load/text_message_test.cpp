@@ -1,5 +1,6 @@
 #include "load/text_message.h"
 
+#include "haptic/v1/config.pb.h"
 #include "haptic/v1/scene.pb.h"
 #include "tests/unit/load/load_support.h"
 
@@ -91,8 +92,17 @@ TEST(TextMessage, RefusesTextThatNoClientCouldRead) {
   EXPECT_EQ(scene.name(), "\u00fc\u20ac\U0001F600");
 }
 
+TEST(TextMessage, RefusesTextThatIsVeryLong) {
+  EXPECT_EQ(error_in("name: \"" + std::string(4097, 'x') + "\"").field(), "name");
+  v1::Scene scene;
+  EXPECT_NO_THROW(parse_message("name: \"" + std::string(4096, 'x') + "\"", "f", Syntax::kText, scene));
+}
+
 TEST(TextMessage, RefusesAnEnumeratorThatDoesNotExistEvenAsANumber) {
-  EXPECT_EQ(error_in("name: \"" + std::string(5000, 'x') + "\"").field(), "name");
+  v1::DaemonConfig config;
+  const std::string text = "listen { unix { path: \"s\" allow { group: \"g\" role: 77 } } }";
+  EXPECT_EQ(error_of([&] { parse_message(text, "f", Syntax::kText, config); }).field(),
+            "listen[0].unix.allow[0].role");
 }
 
 TEST(TextMessage, OfAMessageFromMemoryNamesTheFieldAlone) {
