@@ -151,6 +151,7 @@ void run(const RunOptions& options) {
   const auto mailbox = std::make_unique<servo::Mailbox>(setup::snapshot_capacity(config.message));
   servo::ServoSettings settings = setup::servo_settings(config.message);
   settings.clock = &setup::stage_clock;
+  std::shared_ptr<const engine::Scene> running = scene.prepared->world.shared_scene();
   devices.start();
   servo::ServoLoop loop(settings, devices.devices(), std::move(scene.prepared), *mailbox);
   servo::ServoThread servo_thread(setup::realtime_settings(config.message.servo()), settings.rate_hz, loop);
@@ -164,7 +165,10 @@ void run(const RunOptions& options) {
        .devices = describe_devices(devices, settings.limits.max_force),
        .real_time = describe_rights(servo_thread.report()),
        .scene = std::move(scene.description),
-       .build_scene = [&](const v1::LoadScene& request) { return builder.from_request(request); }});
+       .running = std::move(running),
+       .build_scene = [&](const v1::LoadScene& request) { return builder.from_request(request); },
+       .edit_scene = [&](const v1::EditScene& request,
+                         const ipc::RunningScene& edited) { return builder.from_edit(request, edited); }});
   const StopWaiter waiter(signals, [&] {
     spdlog::info("stopping");
     // first what a hand feels, then what a screen shows

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/carry_map.h"
 #include "load/error.h"
+#include "load/scene_edit.h"
 #include "servo/prepare_scene.h"
 
 namespace haptic {
@@ -67,6 +69,21 @@ ipc::BuiltScene SceneBuilder::from_request(const v1::LoadScene& request) const {
   missing.set_message("there is no such file on the daemon's machine");
   missing.set_file(request.path());
   throw ipc::SceneError(std::move(missing));
+}
+
+ipc::BuiltScene SceneBuilder::from_edit(const v1::EditScene& request,
+                                        const ipc::RunningScene& running) const {
+  try {
+    const load::EditedScene edited = load::edit_scene(running.message, request);
+    ipc::BuiltScene built = finish(load::build_edited(edited, {running.message, *running.scene}, capacity_));
+    built.prepared->carry = servo::Carry{
+        .from_revision = running.revision,
+        .map = engine::make_carry_map(*running.scene, built.prepared->world.scene(),
+                                      load::origins(edited.objects), load::origins(edited.fingers))};
+    return built;
+  } catch (const load::LoadError& error) {
+    throw ipc::SceneError(to_wire(error));
+  }
 }
 
 ipc::BuiltScene SceneBuilder::finish(const std::shared_ptr<const load::LoadedScene>& loaded) const {

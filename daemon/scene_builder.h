@@ -22,6 +22,10 @@ class SceneBuilder {
   /// What a client asks for. Throws ipc::SceneError. Any thread.
   ipc::BuiltScene from_request(const v1::LoadScene& request) const;
 
+  /// The scene that runs with a client's edits done; it takes over what they leave alone. Shapes that are in
+  /// the running scene already cost nothing. Throws ipc::SceneError. Any thread.
+  ipc::BuiltScene from_edit(const v1::EditScene& request, const ipc::RunningScene& running) const;
+
  private:
   ipc::BuiltScene finish(const std::shared_ptr<const load::LoadedScene>& loaded) const;
 

@@ -83,6 +83,83 @@ bool World::restore(const State& state) noexcept {
   return true;
 }
 
+bool World::carry_over(const World& before, const CarryMap& map) noexcept {
+  if (!fits(before, map)) return false;
+  reset();
+  state_.ticks = before.state_.ticks;
+  transitions_ = before.transitions_;
+  for (std::size_t object = 0; object < state_.bodies.size(); ++object) {
+    const CarriedObject& carried = map.objects[object];
+    if (carried.from == kNone) continue;
+    const BodyState& old = before.state_.bodies[carried.from];
+    if (carried.motion) {
+      state_.bodies[object] = old;
+    } else {
+      state_.bodies[object].world_from_object = old.world_from_object;
+    }
+  }
+  for (std::size_t finger = 0; finger < present_.size(); ++finger) carry_finger(before, map, finger);
+  sum_hip_forces();
+  return true;
+}
+
+bool World::fits(const World& before, const CarryMap& map) const noexcept {
+  if (map.objects.size() != state_.bodies.size() || map.fingers.size() != present_.size()) return false;
+  const Scene& old = *before.scene_;
+  for (std::size_t i = 0; i < map.objects.size(); ++i) {
+    const CarriedObject& carried = map.objects[i];
+    if (carried.from == kNone) continue;
+    if (carried.from >= old.objects.size()) return false;
+    // a proxy means something in its own cells only
+    if (carried.contacts && old.objects[carried.from].cells != scene_->objects[i].cells) return false;
+  }
+  for (std::size_t f = 0; f < map.fingers.size(); ++f) {
+    const Index from = map.fingers[f];
+    if (from == kNone) continue;
+    if (from >= old.fingers.size()) return false;
+    if (old.fingers[from].hips.size() != scene_->fingers[f].hips.size()) return false;
+  }
+  return true;
+}
+
+void World::carry_finger(const World& before, const CarryMap& map, std::size_t finger) noexcept {
+  const Index from = map.fingers[finger];
+  if (from == kNone) return;
+  const State& old = before.state_;
+  const std::size_t first = scene_->fingers[finger].first_hip;
+  const std::size_t old_first = before.scene_->fingers[from].first_hip;
+  state_.finger_started[finger] = old.finger_started[from];
+  state_.finger_wrenches[finger] = old.finger_wrenches[from];
+  for (std::size_t i = 0; i < scene_->fingers[finger].hips.size(); ++i) {
+    state_.hip_positions[first + i] = old.hip_positions[old_first + i];
+  }
+  for (std::size_t object = 0; object < state_.bodies.size(); ++object) {
+    for (std::size_t i = 0; i < scene_->fingers[finger].hips.size(); ++i) {
+      carry_contact(before, map, object, finger, i);
+    }
+  }
+}
+
+void World::carry_contact(const World& before, const CarryMap& map, std::size_t object, std::size_t finger,
+                          std::size_t hip) noexcept {
+  const CarriedObject& carried = map.objects[object];
+  const std::size_t now = scene_->fingers[finger].first_hip + hip;
+  const std::size_t contact = object * scene_->hip_count + now;
+  if (carried.from != kNone && carried.contacts) {
+    const std::size_t old_hip = before.scene_->fingers[map.fingers[finger]].first_hip + hip;
+    const std::size_t old = carried.from * before.scene_->hip_count + old_hip;
+    state_.proxies[contact] = before.state_.proxies[old];
+    state_.contact_forces[contact] = before.state_.contact_forces[old];
+    return;
+  }
+  // a finger that is not there is started by step() when it comes
+  if (state_.finger_started[finger] == 0) return;
+  const Object& fresh = scene_->objects[object];
+  const Frame frame(state_.bodies[object].world_from_object);
+  start_proxy({*fresh.cells, fresh.materials}, frame.to_object(state_.hip_positions[now]),
+              state_.proxies[contact]);
+}
+
 glm::dvec3 World::proxy_in_world(std::size_t object, std::size_t hip) const noexcept {
   return state_.bodies[object].world_from_object * state_.proxies[object * scene_->hip_count + hip].position;
 }
@@ -146,7 +223,7 @@ void World::constrain_hips(std::size_t object_index, double dt, Clock clock) noe
   body.applied = {force, frame.turn_to_world(torque)};
 }
 
-void World::sum_forces(std::span<const FingerPose> fingers) noexcept {
+void World::sum_hip_forces() noexcept {
   for (std::size_t hip = 0; hip < scene_->hip_count; ++hip) {
     glm::dvec3 sum{0.0};
     for (std::size_t object = 0; object < scene_->objects.size(); ++object) {
@@ -154,6 +231,10 @@ void World::sum_forces(std::span<const FingerPose> fingers) noexcept {
     }
     state_.hip_forces[hip] = sum;
   }
+}
+
+void World::sum_forces(std::span<const FingerPose> fingers) noexcept {
+  sum_hip_forces();
   for (std::size_t f = 0; f < present_.size(); ++f) {
     const Finger& finger = scene_->fingers[f];
     const std::size_t count = finger.hips.size();

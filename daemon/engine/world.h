@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "engine/carry_map.h"
 #include "engine/constraint.h"
 #include "engine/finger.h"
 #include "engine/scene.h"
@@ -37,7 +38,15 @@ class World {
   /// Real-time safe.
   bool restore(const State& state) noexcept;
 
+  /// Goes on from the last instant of `before`, the world of the scene that this one's was edited from: time,
+  /// transitions, and what `map` carries. What starts anew joins at that instant, where its scene puts it and
+  /// at rest; HIPs of fingers that go on are started against it, and swallowed if inside rigid material.
+  /// False, and nothing is changed, if the map is not of these two worlds. Objects x HIPs of work; real-time
+  /// safe.
+  bool carry_over(const World& before, const CarryMap& map) noexcept;
+
   const Scene& scene() const noexcept { return *scene_; }
+  const std::shared_ptr<const Scene>& shared_scene() const noexcept { return scene_; }
   const State& state() const noexcept { return state_; }
   const TransitionTable& transitions() const noexcept { return transitions_; }
   void clear_transitions() noexcept { transitions_ = TransitionTable{}; }
@@ -46,9 +55,14 @@ class World {
   glm::dvec3 proxy_in_world(std::size_t object, std::size_t hip) const noexcept;
 
  private:
+  bool fits(const World& before, const CarryMap& map) const noexcept;
+  void carry_finger(const World& before, const CarryMap& map, std::size_t finger) noexcept;
+  void carry_contact(const World& before, const CarryMap& map, std::size_t object, std::size_t finger,
+                     std::size_t hip) noexcept;
   void move_bodies(double dt) noexcept;
   void place_hips(std::span<const FingerPose> fingers) noexcept;
   void constrain_hips(std::size_t object, double dt, Clock clock) noexcept;
+  void sum_hip_forces() noexcept;
   void sum_forces(std::span<const FingerPose> fingers) noexcept;
 
   std::shared_ptr<const Scene> scene_;

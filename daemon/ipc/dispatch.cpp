@@ -24,6 +24,7 @@ constexpr std::array kRows = {
     Row{v1::Request::kSubscribe, v1::OBSERVE, handle_subscribe},
     Row{v1::Request::kUnsubscribe, v1::OBSERVE, handle_unsubscribe},
     Row{v1::Request::kLoadScene, v1::SCRIPT, handle_load_scene},
+    Row{v1::Request::kEditScene, v1::SCRIPT, handle_edit_scene},
     Row{v1::Request::kResetScene, v1::SCRIPT, handle_servo_command},
     Row{v1::Request::kPause, v1::SCRIPT, handle_servo_command},
     Row{v1::Request::kResume, v1::SCRIPT, handle_servo_command},

@@ -13,4 +13,8 @@ void handle_load_scene(Desk& desk, const Caller& /*caller*/, const v1::Request& 
   desk.scenes.load(request.load_scene(), reply);
 }
 
+void handle_edit_scene(Desk& desk, const Caller& /*caller*/, const v1::Request& request, const Reply& reply) {
+  desk.scenes.edit(request.edit_scene(), reply);
+}
+
 }  // namespace haptic::ipc

@@ -89,6 +89,7 @@ void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Reques
         reply.fail(v1::Error::FAULT_LATCHED,
                    "a fault is latched" + name_fault(desk) + "; find its cause, then clear it");
         break;
+      case Outcome::kOutdated:  // of edits only
       case Outcome::kNoAnswer:
         reply.fail(v1::Error::FAILED, "the servo thread does not answer");
         break;

@@ -9,6 +9,7 @@ SceneStore::SceneStore(Services& services, ServoLink& servo)
     : services_(services),
       servo_(servo),
       current_(services.scene),
+      running_(services.running),
       last_revision_(services.scene.revision()) {}
 
 void SceneStore::load(const v1::LoadScene& request, Reply reply) {
@@ -16,13 +17,40 @@ void SceneStore::load(const v1::LoadScene& request, Reply reply) {
     reply.fail(v1::Error::INVALID, "load_scene needs a scene or a path");
     return;
   }
-  if (building_.valid() || next_) {
-    reply.fail(v1::Error::BUSY, "another scene is being loaded; try again");
+  if (is_busy(reply)) {
     return;
   }
+  build([make = services_.build_scene, request] { return make(request); }, std::move(reply));
+}
+
+void SceneStore::edit(const v1::EditScene& request, Reply reply) {
+  if (is_busy(reply)) {
+    return;
+  }
+  if (request.expected_revision() != 0 && request.expected_revision() != current_.revision()) {
+    v1::Error error = make_error(v1::Error::BUSY, "revision " + std::to_string(current_.revision()) +
+                                                      " of the scene runs; look at it and try again");
+    error.set_field("expected_revision");
+    reply.fail(std::move(error));
+    return;
+  }
+  RunningScene running{current_.scene(), running_, current_.revision()};
+  build(
+      [make = services_.edit_scene, request, running = std::move(running)] { return make(request, running); },
+      std::move(reply));
+}
+
+bool SceneStore::is_busy(const Reply& reply) const {
+  if (!building_.valid() && !next_) {
+    return false;
+  }
+  reply.fail(v1::Error::BUSY, "another scene is being loaded; try again");
+  return true;
+}
+
+void SceneStore::build(std::function<BuiltScene()> make, Reply reply) {
   reply_ = std::move(reply);
-  building_ =
-      std::async(std::launch::async, [build = services_.build_scene, request] { return build(request); });
+  building_ = std::async(std::launch::async, std::move(make));
 }
 
 void SceneStore::poll(SteadyClock::time_point now) {
@@ -41,6 +69,7 @@ void SceneStore::poll(SteadyClock::time_point now) {
 void SceneStore::swap(BuiltScene built, SteadyClock::time_point now) {
   built.prepared->revision = ++last_revision_;
   built.description.set_revision(last_revision_);
+  std::shared_ptr<const engine::Scene> running = built.prepared->world.shared_scene();
   servo::Command command;
   command.kind = servo::CommandKind::kSwapScene;
   command.scene = built.prepared.get();
@@ -49,6 +78,8 @@ void SceneStore::swap(BuiltScene built, SteadyClock::time_point now) {
       v1::Response response;
       *response.mutable_scene() = current_;
       reply.send(std::move(response));
+    } else if (outcome == Outcome::kOutdated) {
+      reply.fail(v1::Error::BUSY, "another scene runs than the one that was edited; try again");
     } else {
       reply.fail(v1::Error::FAILED, "the servo thread has not taken the scene");
     }
@@ -57,6 +88,7 @@ void SceneStore::swap(BuiltScene built, SteadyClock::time_point now) {
     reply_->fail(v1::Error::BUSY, "the servo thread has too many commands waiting; try again");
     return;
   }
+  next_running_ = std::move(running);
   static_cast<void>(built.prepared.release());  // the command holds it
   next_ = std::move(built.description);
 }
@@ -64,8 +96,10 @@ void SceneStore::swap(BuiltScene built, SteadyClock::time_point now) {
 void SceneStore::swapped(bool done) {
   if (done && next_) {
     current_ = std::move(*next_);
+    running_ = std::move(next_running_);
   }
   next_.reset();
+  next_running_.reset();
 }
 
 }  // namespace haptic::ipc

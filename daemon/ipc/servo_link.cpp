@@ -12,6 +12,8 @@ Outcome outcome_of(servo::EventKind kind) noexcept {
       return Outcome::kNothingToDo;
     case servo::EventKind::kFaultRefused:
       return Outcome::kFaultRefused;
+    case servo::EventKind::kOutdated:
+      return Outcome::kOutdated;
     default:
       return Outcome::kDone;
   }
@@ -19,7 +21,7 @@ Outcome outcome_of(servo::EventKind kind) noexcept {
 
 bool is_answer(servo::EventKind kind) noexcept {
   return kind == servo::EventKind::kDone || kind == servo::EventKind::kNothingToDo ||
-         kind == servo::EventKind::kFaultRefused;
+         kind == servo::EventKind::kFaultRefused || kind == servo::EventKind::kOutdated;
 }
 
 }  // namespace

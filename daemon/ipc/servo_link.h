@@ -13,7 +13,7 @@ namespace haptic::ipc {
 
 using SteadyClock = std::chrono::steady_clock;
 
-enum class Outcome { kDone, kNothingToDo, kFaultRefused, kNoAnswer };
+enum class Outcome { kDone, kNothingToDo, kFaultRefused, kOutdated, kNoAnswer };
 
 class ServoLink {
  public:

@@ -20,13 +20,20 @@ constexpr Range kTimes{0.0, 1e9, " s"};
 class SceneBuilder {
  public:
   SceneBuilder(LoadedScene& loaded, const TextSource& source, const std::filesystem::path* file,
-               const v1::Capacity& capacity)
+               const v1::Capacity& capacity, const Built* running)
       : message_(loaded.message),
         scene_(loaded.scene),
         warnings_(loaded.warnings),
         source_(source),
         file_(file),
-        capacity_(capacity) {}
+        capacity_(capacity),
+        running_(running) {
+    if (running == nullptr) return;
+    for (int i = 0; i < running->message.object_size(); ++i) {
+      running_cells_[key_of(running->message.object(i))] =
+          running->scene.objects[static_cast<std::size_t>(i)].cells;
+    }
+  }
 
   void build() {
     check_values(message_, source_);
@@ -116,13 +123,22 @@ class SceneBuilder {
     }
   }
 
-  // objects of the same shape share their cells
+  using CellsKey = std::pair<std::string, double>;
+
+  static CellsKey key_of(const v1::Object& object) {
+    return {object.shape().SerializeAsString(), object.air_margin()};
+  }
+
+  // objects of the same shape share their cells, with those that run too
   std::shared_ptr<const engine::CellComplex> cells(const std::string& field, const v1::Object& message) {
-    const auto key = std::make_pair(message.shape().SerializeAsString(), message.air_margin());
+    const CellsKey key = key_of(message);
     auto& cells = shared_cells_[key];
     if (cells == nullptr) {
-      cells = std::make_shared<const engine::CellComplex>(
-          make_cells(source_, field + ".shape", message.shape(), message.air_margin(), file_, warnings_));
+      const auto same = running_cells_.find(key);
+      cells = same != running_cells_.end()
+                  ? same->second
+                  : std::make_shared<const engine::CellComplex>(make_cells(
+                        source_, field + ".shape", message.shape(), message.air_margin(), file_, warnings_));
       cell_count_ += cells->cells().size();
       if (cell_count_ > kMostCells) {
         source_.fail(field + ".shape", "brings the scene to " + std::to_string(cell_count_) +
@@ -184,12 +200,28 @@ class SceneBuilder {
     object.release_after = message.release_after();
     object.dynamics.linear_viscosity = message.linear_viscosity();
     object.dynamics.angular_viscosity = message.angular_viscosity();
-    object.dynamics.mass = engine::mass_properties(*object.cells, object.materials);
+    object.dynamics.mass = mass_of(object);
     const engine::MassProperties& mass = object.dynamics.mass;
     const bool can_turn = mass.inertia.x > 0.0 && mass.inertia.y > 0.0 && mass.inertia.z > 0.0;
     if (!(mass.mass > 0.0) || !can_turn) {
       source_.fail(field, "an object that moves needs a mass: give one of its materials a density");
     }
+  }
+
+  // summing over cells is slow where there are many
+  engine::MassProperties mass_of(const engine::Object& object) const {
+    if (running_ != nullptr) {
+      for (const engine::Object& other : running_->scene.objects) {
+        const bool weighs_the_same =
+            other.dynamic && other.cells == object.cells &&
+            std::equal(other.materials.begin(), other.materials.end(), object.materials.begin(),
+                       object.materials.end(), [](const engine::Material& a, const engine::Material& b) {
+                         return a.density == b.density;
+                       });
+        if (weighs_the_same) return other.dynamics.mass;
+      }
+    }
+    return engine::mass_properties(*object.cells, object.materials);
   }
 
   void finger(int index) {
@@ -208,11 +240,14 @@ class SceneBuilder {
   const TextSource& source_;
   const std::filesystem::path* file_;
   const v1::Capacity& capacity_;
+  const Built* running_;
   Names material_names_{source_, "material"};
   Names object_names_{source_, "object"};
   Names finger_names_{source_, "finger"};
   std::vector<engine::Material> materials_;
-  std::map<std::pair<std::string, double>, std::shared_ptr<const engine::CellComplex>> shared_cells_;
+  using CellsOfShapes = std::map<CellsKey, std::shared_ptr<const engine::CellComplex>>;
+  CellsOfShapes running_cells_;
+  CellsOfShapes shared_cells_;
   std::size_t cell_count_ = 0;
   std::size_t hip_count_ = 0;
 };
@@ -221,10 +256,10 @@ class SceneBuilder {
 
 std::shared_ptr<const LoadedScene> build_scene(v1::Scene message, const TextSource& source,
                                                const std::filesystem::path* file,
-                                               const v1::Capacity& capacity) {
+                                               const v1::Capacity& capacity, const Built* running) {
   const auto loaded = std::make_shared<LoadedScene>();
   loaded->message = std::move(message);
-  SceneBuilder(*loaded, source, file, capacity).build();
+  SceneBuilder(*loaded, source, file, capacity, running).build();
   return loaded;
 }
 

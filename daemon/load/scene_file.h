@@ -26,6 +26,12 @@ struct LoadedScene {
   std::vector<std::string> warnings;  // what is allowed, but hardly meant
 };
 
+/// A scene and what was built of it, object by object.
+struct Built {
+  const v1::Scene& message;
+  const engine::Scene& scene;
+};
+
 /// Reads and builds the scene of a file. Throws LoadError. Not real-time safe; takes seconds for large
 /// meshes.
 std::shared_ptr<const LoadedScene> load_scene(const std::filesystem::path& file,
@@ -34,9 +40,10 @@ std::shared_ptr<const LoadedScene> load_scene(const std::filesystem::path& file,
 /// Builds a scene that a client sent. Mesh files in it are refused.
 std::shared_ptr<const LoadedScene> build_scene(v1::Scene message, const v1::Capacity& capacity);
 
-/// What both do: `file` is what mesh paths are relative to; nullptr refuses them.
+/// What both do: `file` is what mesh paths are relative to; nullptr refuses them. Shapes that `running` has
+/// are not cut again, and its meshes not read again: the objects share its cells.
 std::shared_ptr<const LoadedScene> build_scene(v1::Scene message, const TextSource& source,
                                                const std::filesystem::path* file,
-                                               const v1::Capacity& capacity);
+                                               const v1::Capacity& capacity, const Built* running = nullptr);
 
 }  // namespace haptic::load

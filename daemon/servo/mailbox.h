@@ -14,8 +14,10 @@
 #include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
+#include "engine/carry_map.h"
 #include "engine/constraint.h"
 #include "engine/world.h"
 #include "rt/latency_histogram.h"
@@ -24,12 +26,19 @@
 
 namespace haptic::servo {
 
+/// What an edited scene takes over from the one that runs.
+struct Carry {
+  std::uint64_t from_revision = 0;  // the scene that the map was made for
+  engine::CarryMap map;
+};
+
 /// A scene that was built off the servo thread, with all the memory that running it needs.
 struct PreparedScene {
   std::uint64_t revision = 0;
   engine::World world;
   std::vector<std::uint32_t> device_of_finger;   // index in the device set; kNoDevice: none has this name
   std::vector<engine::FingerPose> finger_poses;  // scratch of the tick
+  std::optional<Carry> carry = std::nullopt;     // of an edited scene; none: it starts at its tick 0
 };
 
 enum class CommandKind : std::uint8_t {
@@ -40,7 +49,7 @@ enum class CommandKind : std::uint8_t {
   kStep,   // `ticks` (0: one) while paused; answered when they have run
   kReset,  // the scene to its state before tick 0
   kClearFault,
-  kSwapScene,  // `scene` becomes the one that runs; the old one comes back in kSceneRetired
+  kSwapScene,  // `scene` becomes the one that runs; the one that does not comes back in kSceneRetired
   kResetStats,
 };
 
@@ -55,6 +64,7 @@ enum class EventKind : std::uint8_t {
   kDone,          // answer to a command
   kNothingToDo,   // answer: it was so already
   kFaultRefused,  // answer: a fault is latched
+  kOutdated,      // answer: another scene runs than the one that was edited
   kFaultLatched,  // `fault`
   kTicksMissed,   // `count` periods were slept through
   kSceneRetired,  // `scene` is no longer used and is the receiver's to free

@@ -80,7 +80,7 @@ class ServoLoop {
   EventKind arm() noexcept;
   EventKind resume(const Instant& now) noexcept;
   EventKind clear_fault() noexcept;
-  void swap_scene(PreparedScene* scene, const Instant& now) noexcept;
+  EventKind swap_scene(PreparedScene* scene, const Instant& now) noexcept;
   void restart_ramps() noexcept;
   void begin_step(const Command& command) noexcept;
   void finish_step(const Instant& now) noexcept;

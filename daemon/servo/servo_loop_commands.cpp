@@ -58,7 +58,7 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
       answer = clear_fault();
       break;
     case CommandKind::kSwapScene:
-      swap_scene(command.scene, now);
+      answer = swap_scene(command.scene, now);
       break;
     case CommandKind::kResetStats:
       stats_ = {};
@@ -93,11 +93,19 @@ EventKind ServoLoop::clear_fault() noexcept {
   return EventKind::kDone;
 }
 
-void ServoLoop::swap_scene(PreparedScene* scene, const Instant& now) noexcept {
-  PreparedScene* const retired = scene_.release();
-  scene_.reset(scene);
-  restart_ramps();
+EventKind ServoLoop::swap_scene(PreparedScene* scene, const Instant& now) noexcept {
+  const std::optional<Carry>& carry = scene->carry;
+  const bool taken = !carry || (carry->from_revision == scene_->revision &&
+                                scene->world.carry_over(scene_->world, carry->map));
+  PreparedScene* retired = scene;
+  if (taken) {
+    retired = scene_.release();
+    scene_.reset(scene);
+    // an edit leaves what a hand holds as it is, and the slew limit sees to the rest
+    if (!carry) restart_ramps();
+  }
   send({.kind = EventKind::kSceneRetired, .command = CommandKind::kSwapScene, .scene = retired}, now);
+  return taken ? EventKind::kDone : EventKind::kOutdated;
 }
 
 void ServoLoop::restart_ramps() noexcept {

@@ -54,6 +54,24 @@ inline ipc::BuiltScene build_example(const v1::LoadScene& request) {
   return built;
 }
 
+/// Takes the gravity that a client sets, and refuses anything else.
+inline ipc::BuiltScene edit_example(const v1::EditScene& request, const ipc::RunningScene& running) {
+  v1::LoadScene load;
+  *load.mutable_scene() = running.message;
+  for (const v1::SceneEdit& edit : request.edit()) {
+    if (!edit.has_set_gravity()) {
+      v1::Error error;
+      error.set_code(v1::Error::INVALID);
+      error.set_field("edit[0]");
+      throw ipc::SceneError(error);
+    }
+    *load.mutable_scene()->mutable_gravity() = edit.set_gravity();
+  }
+  ipc::BuiltScene built = build_example(load);
+  built.prepared->carry = servo::Carry{.from_revision = running.revision, .map = {}};
+  return built;
+}
+
 class TestDaemon {
  public:
   explicit TestDaemon(ipc::ServerSettings settings = {})
@@ -69,7 +87,9 @@ class TestDaemon {
                            .devices = {},
                            .real_time = {},
                            .scene = example_scene(),
-                           .build_scene = build_example};
+                           .running = std::make_shared<const engine::Scene>(),
+                           .build_scene = build_example,
+                           .edit_scene = edit_example};
     v1::DeviceDescription& device = services.devices.emplace_back();
     device.set_name("left");
     device.set_driver("simulated");

@@ -16,7 +16,7 @@ const std::map<std::string, v1::Role>& expected_roles() {
       {"load_scene", v1::SCRIPT},   {"reset_scene", v1::SCRIPT},   {"arm", v1::DRIVE},
       {"disarm", v1::SCRIPT},       {"pause", v1::SCRIPT},         {"resume", v1::SCRIPT},
       {"step", v1::SCRIPT},         {"get_stats", v1::OBSERVE},    {"subscribe", v1::OBSERVE},
-      {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN}};
+      {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT}};
   return kRoles;
 }
 
@@ -47,7 +47,9 @@ class Office {
                   .devices = {},
                   .real_time = {},
                   .scene = test::example_scene(),
-                  .build_scene = test::build_example} {
+                  .running = {},
+                  .build_scene = test::build_example,
+                  .edit_scene = test::edit_example} {
     for (std::size_t i = 0; i < commands_before; ++i) {
       mailbox_->commands.push({});
     }
