@@ -20,7 +20,7 @@ std::string user_socket_directory() {
 }
 
 std::string client_socket_path() {
-  if (const std::string path = variable("HAPTICD_SOCKET"); !path.empty()) {
+  if (std::string path = variable("HAPTICD_SOCKET"); !path.empty()) {
     return path;
   }
   if (::access(kServiceSocket, F_OK) == 0) {

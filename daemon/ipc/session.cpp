@@ -1,7 +1,10 @@
 #include "ipc/session.h"
 
+#include <spdlog/spdlog.h>
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
+#include <exception>
 
 namespace haptic::ipc {
 namespace asio = boost::asio;
@@ -159,7 +162,13 @@ void Session::take_request(const v1::Request& request) {
     reply.fail(v1::Error::BUSY, std::to_string(limits_.open_requests) + " requests wait for their answers");
     return;
   }
-  dispatch(desk_, caller_, request, reply);
+  try {
+    dispatch(desk_, caller_, request, reply);
+  } catch (const std::exception& error) {
+    // a defect of ours; it ends this client, and neither the others nor the devices
+    spdlog::error("a request failed unexpectedly: {}", error.what());
+    cut_off(make_error(v1::Error::FAILED, "the daemon failed in this request; its log tells more"));
+  }
 }
 
 void Session::tell(const std::string& framed_event) {
