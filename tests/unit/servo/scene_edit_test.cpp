@@ -174,7 +174,7 @@ std::vector<engine::Object> million_cells() {
   return objects;
 }
 
-std::uint64_t transitions(const ServoRig& rig) {
+std::uint64_t transitions(ServoRig& rig) {
   std::uint64_t sum = 0;
   for (const auto& row : rig.loop().scene().world.transitions().count) {
     for (const std::uint64_t count : row) sum += count;
