@@ -141,8 +141,8 @@ std::string bytes(std::uint64_t count) {
   if (count < 1024) {
     return fmt::format("{} B", count);
   }
-  return count < 1024 * 1024 ? fmt::format("{:.1f} KiB", value / 1024.0)
-                             : fmt::format("{:.1f} MiB", value / (1024.0 * 1024.0));
+  return count < std::uint64_t{1024} * 1024 ? fmt::format("{:.1f} KiB", value / 1024.0)
+                                            : fmt::format("{:.1f} MiB", value / (1024.0 * 1024.0));
 }
 
 std::string count_of(std::uint64_t count, const std::string& noun) {

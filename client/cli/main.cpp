@@ -6,14 +6,16 @@
 
 #include "client/cli/verbs.h"
 
-int main(int argc, char** argv) {
-  using namespace haptic;
-  cli::Command command;
+namespace haptic::cli {
+namespace {
+
+int run(int argc, char** argv) {
+  Command command;
   CLI::App app("Talks to hapticd, the haptics daemon", "hapticctl");
   app.set_version_flag("--version", "hapticctl " HAPTIC_VERSION);
   app.require_subcommand(1);
-  cli::add_common_options(app, command);
-  cli::add_verbs(app, command);
+  add_common_options(app, command);
+  add_verbs(app, command);
   app.footer(
       "The daemon is looked for at --socket, else HAPTICD_SOCKET, else the system service's socket, else "
       "the\n"
@@ -26,15 +28,24 @@ int main(int argc, char** argv) {
       return app.exit(error);  // --help, --version
     }
     std::fprintf(stderr, "hapticctl: %s; see hapticctl --help\n", error.what());
-    return cli::kUsage;
+    return kUsage;
   }
   try {
     return command.action(command);
   } catch (const client::Error& error) {
     std::fprintf(stderr, "hapticctl: %s\n", error.what());
-    return cli::exit_code(error);
+    return exit_code(error);
+  }
+}
+
+}  // namespace
+}  // namespace haptic::cli
+
+int main(int argc, char** argv) {
+  try {
+    return haptic::cli::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "hapticctl: %s\n", error.what());
-    return cli::kFailed;
+    return haptic::cli::kFailed;
   }
 }
