@@ -59,6 +59,7 @@ void make_private_directory(const std::string& directory) {
 // an access list with room for named groups: owner and each group read and write, others nothing
 std::vector<char> access_list(const std::vector<Authoriser::Entry>& groups) {
   std::vector<gid_t> ids;
+  ids.reserve(groups.size());
   for (const Authoriser::Entry& entry : groups) {
     ids.push_back(entry.group);
   }

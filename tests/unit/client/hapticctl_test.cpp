@@ -198,6 +198,10 @@ TEST_F(Hapticctl, TellsWhereASceneTextIsWrong) {
 }
 
 TEST_F(Hapticctl, ShowsObjectsAndFingers) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP()
+      << "under ThreadSanitizer protobuf's maps are laid out differently than in the library installed";
+#endif
   serve();
   const Ticker ticker(daemon_->servo());
   const Finished objects = ctl("objects");
