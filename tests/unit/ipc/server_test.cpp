@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "client/lib/connection.h"
 #include "client/lib/error.h"
 #include "tests/support/raw_client.h"
@@ -283,6 +286,7 @@ TEST(Server, TakesNoMoreClientsThanItsLimit) {
       break;
     } catch (const client::Busy&) {
       ASSERT_LT(attempt, 1000);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
 }
