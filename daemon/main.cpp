@@ -76,9 +76,8 @@ void add_simulate(CLI::App& app, haptic::simulate::SimulateOptions& options, Act
   });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// Reads the command line and does what it says.
+int run_verb(int argc, char** argv) {
   haptic::RunOptions run;
   haptic::load::CheckOptions check;
   haptic::simulate::SimulateOptions simulate;
@@ -98,8 +97,14 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "hapticd: %s; see hapticd --help\n", error.what());
     return kUsage;
   }
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    return action();
+    return run_verb(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "hapticd: %s\n", error.what());
     return kFailed;

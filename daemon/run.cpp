@@ -86,7 +86,7 @@ class StopWaiter {
           call();
         }) {}
   ~StopWaiter() {
-    pthread_kill(thread_.native_handle(), SIGTERM);
+    pthread_kill(thread_.native_handle(), SIGINT);
     thread_.join();
   }
   StopWaiter(const StopWaiter&) = delete;

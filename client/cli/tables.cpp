@@ -40,10 +40,13 @@ std::string name_at(const std::vector<std::string>& names, std::size_t i) {
   return i < names.size() ? names[i] : fmt::format("#{}", i);
 }
 
+// wide enough that columns stand still while their numbers change
+std::string coordinate(double metres) { return fmt::format("{:>8}", millimetres(metres)); }
+std::string millimetres_per_second(double speed) { return fmt::format("{:>6.1f}", speed * 1e3); }
+// no negative zero
+double rounded(double value, double unit) { return std::round(value / unit) * unit + 0.0; }
 std::string newtons(double force) { return fmt::format("{:.3f}", force); }
-std::string signed_newtons(double force) {
-  return fmt::format("{:+.3f}", std::round(force * 1e3) / 1e3 + 0.0);
-}
+std::string signed_newtons(double force) { return fmt::format("{:>+7.3f}", rounded(force, 1e-3)); }
 
 // what the quaternion turns by, and about what
 std::string turn(const google::protobuf::RepeatedField<double>& values, int i) {
@@ -56,9 +59,10 @@ std::string turn(const google::protobuf::RepeatedField<double>& values, int i) {
   if (angle < 0.05) {
     return "0.0";
   }
-  const double sign = values[4 * i] < 0.0 ? -1.0 : 1.0;
-  return fmt::format("{:.1f} about {:+.2f} {:+.2f} {:+.2f}", angle, sign * axis.x / sine,
-                     sign * axis.y / sine, sign * axis.z / sine);
+  // -q is the same rotation as q
+  const double scale = (values[4 * i] < 0.0 ? -1.0 : 1.0) / sine;
+  return fmt::format("{:.1f} about {:+.2f} {:+.2f} {:+.2f}", angle, rounded(scale * axis.x, 0.01),
+                     rounded(scale * axis.y, 0.01), rounded(scale * axis.z, 0.01));
 }
 
 // whether material acts on the HIP there; in free cells it is held by nothing but the cell itself
@@ -123,15 +127,14 @@ std::string objects_table(const Names& names, const v1::ObjectsFrame& objects) {
                {"x mm"},
                {"y mm"},
                {"z mm"},
-               {"turn deg", Align::kLeft},
                {"speed mm/s"},
-               {"by fingers N"}});
+               {"by fingers N"},
+               {"turn deg", Align::kLeft}});
   for (int i = 0; i < objects.position_size() / 3; ++i) {
     const Triple at = triple(objects.position(), i);
-    table.add({object_name(names, objects, i), millimetres(at.x), millimetres(at.y), millimetres(at.z),
-               turn(objects.orientation(), i),
-               fmt::format("{:.1f}", triple(objects.velocity(), i).length() * 1e3),
-               newtons(triple(objects.force(), i).length())});
+    table.add({object_name(names, objects, i), coordinate(at.x), coordinate(at.y), coordinate(at.z),
+               millimetres_per_second(triple(objects.velocity(), i).length()),
+               newtons(triple(objects.force(), i).length()), turn(objects.orientation(), i)});
   }
   return table.empty() ? "" : table.to_string();
 }
@@ -153,8 +156,8 @@ std::string devices_table(const Names& names, const v1::DevicesFrame& devices) {
     if (fault != v1::FAULT_NONE) {
       state = "FAULT " + describe(fault);
     }
-    table.add({name_at(names.devices, static_cast<std::size_t>(i)), millimetres(at.x), millimetres(at.y),
-               millimetres(at.z), fmt::format("{:.1f}", triple(devices.velocity(), i).length() * 1e3),
+    table.add({name_at(names.devices, static_cast<std::size_t>(i)), coordinate(at.x), coordinate(at.y),
+               coordinate(at.z), millimetres_per_second(triple(devices.velocity(), i).length()),
                newtons(triple(devices.force(), i).length()),
                fmt::format("{:.1f}", item(devices.sample_age(), i) * 1e3),
                fmt::format("{:b}", item(devices.buttons(), i)), state});
@@ -205,7 +208,7 @@ std::string hips_table(const Names& names, const v1::HipsFrame& hips) {
     const Triple proxy = triple(hips.contact_proxy(), i);
     table.add({fmt::format("{}", hip), finger_name, name_at(names.objects, item(hips.contact_object(), i)),
                name_of(hips.contact_state(i)), item(hips.contact_slipping(), i) ? "slips" : "",
-               millimetres(proxy.x), millimetres(proxy.y), millimetres(proxy.z),
+               coordinate(proxy.x), coordinate(proxy.y), coordinate(proxy.z),
                newtons(triple(hips.contact_force(), i).length())});
   }
   return table.empty() ? "" : table.to_string();

@@ -15,6 +15,14 @@ std::string seconds(std::chrono::milliseconds time) {
   return whole + (tenths == "0" ? "" : "." + tenths) + " s";
 }
 
+// a daemon that merely ends, or ends this client, is gone; a mismatch or a refusal is more than that
+[[noreturn]] void throw_goodbye(const v1::Error& error) {
+  if (error.code() == v1::Error::FAILED) {
+    throw Unreachable(error.message());
+  }
+  throw_error(error);
+}
+
 }  // namespace
 
 Connection::Connection(const Options& options)
@@ -150,7 +158,7 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
         throw Unreachable("what listens at " + name_ + " is not a hapticd: a message cannot be read");
       }
       if (envelope.has_goodbye()) {
-        throw_error(envelope.goodbye().error());
+        throw_goodbye(envelope.goodbye().error());
       }
       if (envelope.body_case() == v1::Envelope::BODY_NOT_SET) {
         continue;  // from a newer daemon

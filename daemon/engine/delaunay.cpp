@@ -168,21 +168,11 @@ class Refiner {
         if (is_fixed(t, k) && is_encroached(t, k, p)) return divide_rim(t, k);
         if (cross(corner(t, k + 1) - corner(t, k), p - corner(t, k)) < 0.0 && leave == kNone) leave = k;
       }
-      if (leave == kNone) return clear_of_fixed_edges(t, p) && add_inside(t, p);
+      if (leave == kNone) return add_inside(t, p);
       if (is_fixed(t, leave)) return divide_rim(t, leave);
       t = neighbours_[t][leave];
     }
     return false;
-  }
-
-  /// No fixed edge of a neighbour of t may be encroached either: p would be joined to it.
-  bool clear_of_fixed_edges(Index t, const dvec2& p) const {
-    for (const Index other : neighbours_[t]) {
-      for (Index k = 0; other != kNone && k < 3; ++k) {
-        if (is_fixed(other, k) && is_encroached(other, k, p)) return false;
-      }
-    }
-    return true;
   }
 
   Index new_triangle(Index like) {

@@ -21,8 +21,8 @@ std::vector<glm::dvec3> line_layout(const glm::dvec3& start, const glm::dvec3& e
 
 /// `hips` (>= 1) points spread evenly over a spherical cap around the device's origin: the first at the pole,
 /// the rest on a spiral outward of which each has an equal share of the cap's area and is a golden angle
-/// (137.5 degrees) on from the one before, as seeds are in a sunflower. Opposite directions give mirror images:
-/// two fingertips that face each other press on opposite points. `radius` in m, `cap_angle` the half
+/// (137.5 degrees) on from the one before, as seeds are in a sunflower. Opposite directions give mirror
+/// images: two fingertips that face each other press on opposite points. `radius` in m, `cap_angle` the half
 /// angle of the cap (rad, 0 to pi), `direction` that of the pole (not zero).
 std::vector<glm::dvec3> fingertip_layout(double radius, double cap_angle, int hips,
                                          const glm::dvec3& direction);

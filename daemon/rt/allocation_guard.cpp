@@ -85,46 +85,48 @@ constinit Hidden<void(void*, std::type_info*, void (*)(void*))> hidden_throw("__
 
 // glibc has the allocator a second time under these names, which needs no dlsym (that itself allocates)
 extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-void __libc_free(void* memory);
+void* libc_malloc(std::size_t size) asm("__libc_malloc");
+void* libc_calloc(std::size_t count, std::size_t size) asm("__libc_calloc");
+void* libc_realloc(void* memory, std::size_t size) asm("__libc_realloc");
+void* libc_memalign(std::size_t alignment, std::size_t size) asm("__libc_memalign");
+void libc_free(void* memory) asm("__libc_free");
+[[noreturn]] void guarded_throw(void* thrown, std::type_info* type,
+                                void (*destroy)(void*)) asm("__cxa_throw");
 
 void* malloc(std::size_t size) {
   check("malloc");
-  return __libc_malloc(size);
+  return libc_malloc(size);
 }
 
 void* calloc(std::size_t count, std::size_t size) {
   check("calloc");
-  return __libc_calloc(count, size);
+  return libc_calloc(count, size);
 }
 
 void* realloc(void* memory, std::size_t size) {
   check("realloc");
-  return __libc_realloc(memory, size);
+  return libc_realloc(memory, size);
 }
 
 void* memalign(std::size_t alignment, std::size_t size) {
   check("memalign");
-  return __libc_memalign(alignment, size);
+  return libc_memalign(alignment, size);
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
   check("aligned_alloc");
-  return __libc_memalign(alignment, size);
+  return libc_memalign(alignment, size);
 }
 
 int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
   check("posix_memalign");
-  *memory = __libc_memalign(alignment, size);
+  *memory = libc_memalign(alignment, size);
   return *memory == nullptr ? ENOMEM : 0;
 }
 
 void free(void* memory) {
   if (memory != nullptr) check("free");
-  __libc_free(memory);
+  libc_free(memory);
 }
 
 int pthread_mutex_lock(pthread_mutex_t* mutex) {
@@ -151,7 +153,7 @@ int open(const char* path, int flags, ...) {
   return hidden_open.get()(path, flags, mode);
 }
 
-void __cxa_throw(void* thrown, std::type_info* type, void (*destroy)(void*)) {
+void guarded_throw(void* thrown, std::type_info* type, void (*destroy)(void*)) {
   check("throw");
   hidden_throw.get()(thrown, type, destroy);
   std::abort();

@@ -17,10 +17,10 @@ namespace haptic::rt {
 namespace {
 
 // a tick needs a few KiB. A small stack still fits when the memlock limit is the usual 8 MiB, at which a
-// default stack of 8 MiB could not be made while future memory is locked. glibc takes the thread-local storage
-// of all libraries from it, of which ThreadSanitizer's alone is 0.8 MiB
-constexpr std::size_t kStackBytes = 1536 * 1024;
-constexpr std::size_t kPrefaultedBytes = 256 * 1024;
+// default stack of 8 MiB could not be made while future memory is locked. glibc takes the thread-local
+// storage of all libraries from it, of which ThreadSanitizer's alone is 0.8 MiB
+constexpr std::size_t kStackBytes = std::size_t{1536} * 1024;
+constexpr std::size_t kPrefaultedBytes = std::size_t{256} * 1024;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 

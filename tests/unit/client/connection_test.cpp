@@ -185,7 +185,7 @@ TEST(Connection, ThrowsWhyItWasCutOff) {
                           error.set_message("you read too slowly");
                         }));
   Connection connection(at(daemon.path()));
-  EXPECT_EQ(message_of<Error>([&] { connection.receive(milliseconds(2000)); }), "you read too slowly");
+  EXPECT_EQ(message_of<Unreachable>([&] { connection.receive(milliseconds(2000)); }), "you read too slowly");
 }
 
 TEST(Connection, ReturnsNothingWhenNothingComesInTime) {

@@ -202,7 +202,7 @@ TEST_F(Hapticctl, ShowsObjectsAndFingers) {
   const Ticker ticker(daemon_->servo());
   const Finished objects = ctl("objects");
   EXPECT_EQ(objects.code, 0);
-  EXPECT_TRUE(contains(objects.output, "block   +10.00")) << objects.output;
+  EXPECT_TRUE(contains(objects.output, "block     +10.00")) << objects.output;
   EXPECT_TRUE(contains(ctl("objects --json").output, R"("position":[0.01,0,0])"));
   const Finished fingers = ctl("fingers");
   EXPECT_EQ(fingers.code, 0);

@@ -180,7 +180,6 @@ TEST_P(Stroke, KeepsEveryInvariant) {
   const auto& [model, pair] = GetParam();
   const TetraMesh mesh = model.mesh();
   const bool bare = std::string(model.name) == "bare_box";
-  if (bare && is_rigid(pair.outside)) GTEST_SKIP() << "has no outside cells";
   const std::vector<Material> materials =
       bare ? std::vector<Material>{pair.inside} : std::vector<Material>{pair.outside, pair.inside};
   Probe probe(CellComplex::build(mesh), materials, start_of(pair));
@@ -240,8 +239,19 @@ TEST(StrokeCoverage, StrokesMeetEveryPermittedTransition) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OverModelsAndMaterials, Stroke,
-                         ::testing::Combine(::testing::ValuesIn(kModels), ::testing::ValuesIn(kPairs)),
+/// All that make sense: a cave needs cells around it.
+std::vector<std::tuple<Model, Pair>> combinations() {
+  std::vector<std::tuple<Model, Pair>> all;
+  for (const Model& model : kModels) {
+    for (const Pair& pair : kPairs) {
+      if (std::string(model.name) == "bare_box" && is_rigid(pair.outside)) continue;
+      all.emplace_back(model, pair);
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(OverModelsAndMaterials, Stroke, ::testing::ValuesIn(combinations()),
                          [](const auto& param) {
                            return std::string(std::get<0>(param.param).name) + "_" +
                                   std::get<1>(param.param).name;
