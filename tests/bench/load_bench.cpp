@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -21,9 +22,9 @@ struct Figures {
   std::string name;
   std::size_t clients = 0;  // that read frames
   double seconds = 0.0;
-  v1::Stats stats;
+  v1::Stats stats{};
   double cpu_seconds = 0.0;  // of the daemon
-  Arrivals arrivals;
+  Arrivals arrivals{};
   std::uint64_t deeds = 0;  // reconnects, or commands answered
 };
 
