@@ -38,6 +38,9 @@ void Connection::greet(const Options& options, Clock::time_point deadline) {
   v1::Hello& hello = *mine.mutable_hello();
   hello.set_major(options.major);
   hello.set_minor(proto::kProtocolMinor);
+  for (const std::string_view feature : proto::kFeatures) {
+    hello.add_feature(std::string(feature));
+  }
   hello.set_program(options.program);
   hello.set_version(options.version);
   send(mine, deadline);
@@ -73,7 +76,7 @@ v1::Response Connection::call(v1::Request request) {
       throw Unreachable("the daemon at " + name_ + " did not answer within " + seconds(timeout_));
     }
     if (!answer->has_response()) {
-      kept_.push_back(std::move(*answer));
+      keep(std::move(*answer));
       continue;
     }
     if (answer->response().id() != last_request_) {
@@ -87,27 +90,44 @@ v1::Response Connection::call(v1::Request request) {
 }
 
 std::uint32_t Connection::subscribe(const std::vector<v1::Topic>& topics, std::uint32_t decimation) {
-  v1::Request request;
+  v1::Subscribe subscription;
   for (const v1::Topic topic : topics) {
-    request.mutable_subscribe()->add_topic(topic);
+    subscription.add_topic(topic);
   }
-  request.mutable_subscribe()->set_decimation(decimation);
+  subscription.set_decimation(decimation);
+  return subscribe(std::move(subscription));
+}
+
+std::uint32_t Connection::subscribe(v1::Subscribe subscription) {
+  v1::Request request;
+  *request.mutable_subscribe() = std::move(subscription);
   return call(std::move(request)).subscribed().subscription();
 }
 
 std::optional<v1::Envelope> Connection::receive(std::chrono::milliseconds timeout) {
-  if (!kept_.empty()) {
-    v1::Envelope first = std::move(kept_.front());
-    kept_.pop_front();
-    return first;
-  }
   const Clock::time_point deadline = Clock::now() + timeout;
-  while (std::optional<v1::Envelope> message = read(deadline, true)) {
+  while (kept_.empty()) {
+    std::optional<v1::Envelope> message = read(deadline, true);
+    if (!message) {
+      return std::nullopt;
+    }
     if (!message->has_response()) {
-      return message;
+      keep(std::move(*message));
     }
   }
-  return std::nullopt;
+  v1::Envelope first = std::move(kept_.front());
+  kept_.pop_front();
+  return first;
+}
+
+void Connection::keep(v1::Envelope message) {
+  if (!message.has_batch()) {
+    kept_.push_back(std::move(message));
+    return;
+  }
+  for (v1::Frame& frame : *message.mutable_batch()->mutable_frame()) {
+    *kept_.emplace_back().mutable_frame() = std::move(frame);
+  }
 }
 
 void Connection::send(const v1::Envelope& envelope, Clock::time_point deadline) {

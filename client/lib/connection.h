@@ -43,15 +43,18 @@ class Connection {
 
   /// Returns the number of the subscription. One frame for `decimation` ticks.
   std::uint32_t subscribe(const std::vector<v1::Topic>& topics, std::uint32_t decimation);
+  /// With all that can be chosen. Throws NotFound for a finger or an object that is not there.
+  std::uint32_t subscribe(v1::Subscribe subscription);
 
-  /// The next frame, event or gap. Nothing if none came in time, or a signal arrived. Throws Unreachable when
-  /// the daemon is gone, or why it cut this client off.
+  /// The next frame, event or gap; frames of a batch come one by one. Nothing if none came in time, or a
+  /// signal arrived. Throws Unreachable when the daemon is gone, or why it cut this client off.
   std::optional<v1::Envelope> receive(std::chrono::milliseconds timeout);
 
  private:
   void greet(const Options& options, Clock::time_point deadline);
   void send(const v1::Envelope& envelope, Clock::time_point deadline);
   std::optional<v1::Envelope> read(Clock::time_point deadline, bool until_signal);
+  void keep(v1::Envelope message);
   [[noreturn]] void throw_gone();
 
   std::string name_;
@@ -61,7 +64,7 @@ class Connection {
   std::vector<char> chunk_;
   v1::Hello daemon_;
   std::uint64_t last_request_ = 0;
-  std::deque<v1::Envelope> kept_;  // arrived during a call
+  std::deque<v1::Envelope> kept_;  // arrived and not yet received
 };
 
 }  // namespace haptic::client

@@ -47,6 +47,7 @@ class Server::Impl {
         desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [this] { return count_clients(); }},
         poll_timer_(io_),
         stop_timer_(io_) {
+    publisher_.learn(scenes_.current());
     for (const v1::Listen& listen : or_default(settings_.listen)) {
       open(listen);
     }
@@ -160,7 +161,9 @@ class Server::Impl {
     servo_.poll(now);
     scenes_.poll(now);
     announcer_.poll(now);
-    publisher_.drain(services_.mailbox.snapshots);
+    // the event that a scene runs was sent before the first snapshot of it
+    publisher_.drain(services_.mailbox.snapshots, [this, now] { servo_.poll(now); });
+    publish_stats();
     poll_timer_.expires_after(settings_.poll_period);
     poll_timer_.async_wait([this](const error_code& error) {
       if (!error) {
@@ -169,11 +172,21 @@ class Server::Impl {
     });
   }
 
+  void publish_stats() {
+    services_.mailbox.stats.update();
+    const servo::LoopStats& stats = services_.mailbox.stats.latest();
+    if (stats.tick != last_stats_tick_ && publisher_.has_subscription_for(v1::STATS)) {
+      publisher_.publish(to_wire(stats, services_.rate_hz, services_.mailbox.snapshots.lost()));
+    }
+    last_stats_tick_ = stats.tick;
+  }
+
   void take_event(const servo::Event& event) {
     const bool is_fault_or_miss =
         event.kind == servo::EventKind::kFaultLatched || event.kind == servo::EventKind::kTicksMissed;
     if (!is_fault_or_miss && event.command == servo::CommandKind::kSwapScene) {
       scenes_.swapped(event.kind == servo::EventKind::kDone);
+      publisher_.learn(scenes_.current());
     }
     announcer_.announce(event, scenes_.current(), SteadyClock::now());
   }
@@ -186,6 +199,7 @@ class Server::Impl {
     for (const auto& [id, session] : sessions_) {
       session->tell(bytes);
     }
+    publisher_.publish(event);
   }
 
   std::size_t count_clients() const {
@@ -238,6 +252,7 @@ class Server::Impl {
   ClientId last_client_ = 0;
   asio::steady_timer poll_timer_;
   asio::steady_timer stop_timer_;
+  std::uint64_t last_stats_tick_ = 0;
   bool leaving_ = false;
 };
 

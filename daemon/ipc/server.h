@@ -17,7 +17,7 @@ namespace haptic::ipc {
 struct ServerSettings {
   std::vector<v1::Listen> listen;  // empty: a Unix socket at the default place
   SessionLimits session;
-  std::size_t clients = 64;
+  std::size_t clients = 256;
   std::chrono::milliseconds poll_period{2};        // of mailbox; 64 snapshots must not come in it
   std::chrono::milliseconds servo_patience{2000};  // for the answer to a command
 

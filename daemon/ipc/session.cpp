@@ -39,10 +39,10 @@ Session::Session(ClientId id, Socket socket, std::optional<v1::Role> role, const
 
 void Session::start() {
   const std::weak_ptr<Session> weak = weak_from_this();
-  caller_.sink = [weak](std::uint32_t subscription, std::uint64_t sequence, SharedBytes body) {
+  caller_.sink = [weak](const OutgoingFrame& frame) {
     const auto self = weak.lock();
     if (self && self->state_ == State::kServing) {
-      self->outbox_.push_frame(subscription, sequence, std::move(body));
+      self->outbox_.push_frame(frame);
       self->write();
     }
   };
@@ -137,6 +137,9 @@ v1::Envelope Session::hello() const {
   v1::Hello& mine = *envelope.mutable_hello();
   mine.set_major(proto::kProtocolMajor);
   mine.set_minor(proto::kProtocolMinor);
+  for (const std::string_view feature : proto::kFeatures) {
+    mine.add_feature(std::string(feature));
+  }
   mine.set_program("hapticd");
   mine.set_version(desk_.services.version);
   mine.set_role(caller_.role);

@@ -183,6 +183,42 @@ TEST(Dispatch, RefusesSubscriptionsWithoutOrWithUnknownTopics) {
   EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().code(), v1::Error::INVALID);
 }
 
+TEST(Dispatch, NamesTheFieldOfAFilterThatFindsNothing) {
+  Office office;
+  v1::Request request = request_of("subscribe");
+  v1::Subscribe& wish = *request.mutable_subscribe();
+  wish.add_topic(v1::HIPS);
+  wish.add_finger("thumb");
+  wish.add_finger("toe");
+  v1::Error error = office.ask(request, v1::OBSERVE)->error();
+  EXPECT_EQ(error.code(), v1::Error::NOT_FOUND);
+  EXPECT_EQ(error.field(), "subscribe.finger[1]");
+  EXPECT_EQ(error.message(), "the scene has no finger \"toe\"");
+  wish.mutable_finger()->RemoveLast();
+  wish.add_object("moon");
+  error = office.ask(request, v1::OBSERVE)->error();
+  EXPECT_EQ(error.code(), v1::Error::NOT_FOUND);
+  EXPECT_EQ(error.field(), "subscribe.object[0]");
+  wish.set_object(0, "block");
+  EXPECT_FALSE(office.ask(request, v1::OBSERVE)->has_error());
+}
+
+TEST(Dispatch, RefusesAnUnknownDeliveryAndTooManyNames) {
+  Office office;
+  v1::Request request = request_of("subscribe");
+  v1::Subscribe& wish = *request.mutable_subscribe();
+  wish.add_topic(v1::STATS);
+  wish.set_delivery(static_cast<v1::Delivery>(9));
+  EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().field(), "subscribe.delivery");
+  wish.set_delivery(v1::LOSSLESS);
+  for (int i = 0; i < 1025; ++i) {
+    wish.add_object("block");
+  }
+  EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().code(), v1::Error::INVALID);
+  wish.mutable_object()->RemoveLast();
+  EXPECT_FALSE(office.ask(request, v1::OBSERVE)->has_error());
+}
+
 TEST(Dispatch, BoundsTheSubscriptionsOfAClient) {
   Office office;
   v1::Request request = request_of("subscribe");
