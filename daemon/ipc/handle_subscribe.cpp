@@ -1,12 +1,6 @@
 #include "ipc/handlers.h"
 
 namespace haptic::ipc {
-namespace {
-
-// a client that needs more than these asks for the same frames twice
-constexpr std::size_t kSubscriptionsPerClient = 16;
-
-}  // namespace
 
 void handle_subscribe(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply) {
   TopicSet topics = 0;
@@ -26,8 +20,8 @@ void handle_subscribe(Desk& desk, const Caller& caller, const v1::Request& reque
     reply.fail(error);
     return;
   }
-  if (desk.publisher.subscriptions_of(caller.id) >= kSubscriptionsPerClient) {
-    reply.fail(v1::Error::BUSY, "a client can have " + std::to_string(kSubscriptionsPerClient) +
+  if (desk.publisher.subscriptions_of(caller.id) >= caller.subscriptions) {
+    reply.fail(v1::Error::BUSY, "a client can have " + std::to_string(caller.subscriptions) +
                                     " subscriptions; end one of them");
     return;
   }
