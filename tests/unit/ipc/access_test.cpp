@@ -6,6 +6,7 @@
 #include "client/lib/certificates.h"
 #include "client/lib/connection.h"
 #include "client/lib/error.h"
+#include "ipc/dispatch.h"
 #include "tests/support/raw_client.h"
 #include "tests/support/test_daemon.h"
 
@@ -123,12 +124,12 @@ TEST_P(Access, IsExactlyThatOfTheTableOfCalls) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EachListenerAndRole, Access, testing::ValuesIn(all_entries()),
-                         [](const auto& entry) {
-                           const char* const kinds[] = {"Unix", "Tcp", "Tls"};
-                           return std::string(kinds[static_cast<int>(entry.param.kind)]) + "_" +
-                                  v1::Role_Name(entry.param.asked);
-                         });
+std::string name_of(const testing::TestParamInfo<Entry>& entry) {
+  constexpr const char* kKinds[] = {"Unix", "Tcp", "Tls"};
+  return std::string(kKinds[static_cast<int>(entry.param.kind)]) + "_" + v1::Role_Name(entry.param.asked);
+}
+
+INSTANTIATE_TEST_SUITE_P(EachListenerAndRole, Access, testing::ValuesIn(all_entries()), name_of);
 
 TEST(TlsAccess, RefusesACertificateWithAnotherNameInWords) {
   TestDaemon daemon(encrypted());

@@ -77,7 +77,8 @@ std::vector<v1::Request> all_requests() {
 
 // a hand that presses on a wall and slides, armed, while a client of this role asks; the bits of all forces
 std::uint64_t forces_while_asked(v1::Role role, const std::vector<v1::Request>& requests) {
-  servo::ServoSettings settings{.armed_from_start = true};
+  servo::ServoSettings settings;
+  settings.armed_from_start = true;
   test::ServoRig rig(settings);
   Services services{.mailbox = rig.mailbox(),
                     .version = "1.2",
