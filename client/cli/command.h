@@ -16,19 +16,21 @@ using Action = std::function<ExitCode(Command&)>;
 
 struct Command {
   std::string address;  // --socket
-  bool json = false;    // --json
-  Action action;        // of the verb that was chosen
+  std::string server;   // --server
+  client::Identity identity;
+  bool json = false;  // --json
+  Action action;      // of the verb that was chosen
 
   /// `patience`: for connecting, and for each answer. Throws client::Error.
   client::Connection connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
 };
 
-/// Adds a verb that runs `action`. It has --json and --socket as hapticctl itself does, so that they may
+/// Adds a verb that runs `action`. It has the common options as hapticctl itself does, so that they may
 /// stand on either side of the verb.
 CLI::App* add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
                    Action action);
 
-/// Adds --json and --socket.
+/// Adds --json, and where the daemon is.
 void add_common_options(CLI::App& app, Command& command);
 
 /// One line of JSON with the schema's field names; fields that are zero are told, too.

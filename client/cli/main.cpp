@@ -15,10 +15,11 @@ int main(int argc, char** argv) {
   cli::add_common_options(app, command);
   cli::add_verbs(app, command);
   app.footer(
-      "The daemon is looked for at --socket, else HAPTICD_SOCKET, else the system service's socket, else "
-      "the\n"
-      "user's own. Exit codes: 0 done, 1 failed, 2 nothing to do, 3 not found, 4 refused, 5 daemon\n"
-      "unreachable, 6 protocol mismatch, 7 fault latched, 64 usage.");
+      "The daemon is looked for at --socket, else --server, else HAPTICD_SERVER, else HAPTICD_SOCKET, else\n"
+      "the system service's socket, else the user's own. HAPTICD_CERTIFICATE, HAPTICD_KEY and\n"
+      "HAPTICD_AUTHORITY stand for the options of TLS.\n"
+      "Exit codes: 0 done, 1 failed, 2 nothing to do, 3 not found, 4 refused, 5 daemon unreachable,\n"
+      "6 protocol mismatch, 7 fault latched, 64 usage.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -13,6 +13,7 @@ void add_verbs(CLI::App& app, Command& command) {
   add_arm(app, command);
   add_pause(app, command);
   add_clear(app, command);
+  add_certificates(app, command);
 }
 
 }  // namespace haptic::cli

@@ -30,6 +30,11 @@ Connection::Connection(const Options& options)
       timeout_(options.timeout),
       socket_(StreamSocket::connect(parse_address(options.address), Clock::now() + options.timeout)),
       chunk_(kChunk) {
+  const Address address = parse_address(options.address);
+  if (address.path.empty() && !options.identity.empty()) {
+    tls_.emplace(options.identity, address.host);
+    tls_->handshake(socket_, Clock::now() + options.timeout);
+  }
   greet(options, Clock::now() + options.timeout);
 }
 
@@ -133,7 +138,7 @@ void Connection::keep(v1::Envelope message) {
 void Connection::send(const v1::Envelope& envelope, Clock::time_point deadline) {
   std::string bytes;
   proto::append_frame(envelope, bytes);
-  switch (socket_.send(bytes, deadline)) {
+  switch (tls_ ? tls_->send(socket_, bytes, deadline) : socket_.send(bytes, deadline)) {
     case StreamSocket::Outcome::kDone:
       return;
     case StreamSocket::Outcome::kTimedOut:
@@ -141,6 +146,11 @@ void Connection::send(const v1::Envelope& envelope, Clock::time_point deadline) 
     default:
       throw_gone();
   }
+}
+
+StreamSocket::Outcome Connection::receive_some(std::size_t& received, Clock::time_point deadline) {
+  return tls_ ? tls_->receive(socket_, chunk_, received, deadline)
+              : socket_.receive(chunk_, received, deadline);
 }
 
 // the next envelope of a kind this program knows; a goodbye is thrown
@@ -166,7 +176,7 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
       return envelope;
     }
     std::size_t received = 0;
-    switch (socket_.receive(chunk_, received, deadline)) {
+    switch (receive_some(received, deadline)) {
       case StreamSocket::Outcome::kDone:
         reader_.append(std::string_view(chunk_.data(), received));
         break;
@@ -178,7 +188,8 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
       case StreamSocket::Outcome::kTimedOut:
         return std::nullopt;
       case StreamSocket::Outcome::kClosed:
-        throw Unreachable("the daemon at " + name_ + " closed the connection");
+        throw Unreachable("the daemon at " + name_ + " closed the connection" +
+                          (tls_ && !tls_->problem().empty() ? ": " + tls_->problem() : ""));
     }
   }
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "client/lib/stream_socket.h"
+#include "client/lib/tls.h"
 #include "haptic/v1/control.pb.h"
 #include "proto/framing.h"
 #include "proto/protocol.h"
@@ -23,6 +24,7 @@ namespace haptic::client {
 
 struct Options {
   std::string address;  // see parse_address(); empty: the default place
+  Identity identity;    // for TLS over TCP; empty: none, and the daemon lets observe only
   std::string program = "client";
   std::string version = HAPTIC_VERSION;
   std::chrono::milliseconds timeout{10'000};  // for connecting with Hello, and for the answer of each call
@@ -53,6 +55,7 @@ class Connection {
  private:
   void greet(const Options& options, Clock::time_point deadline);
   void send(const v1::Envelope& envelope, Clock::time_point deadline);
+  StreamSocket::Outcome receive_some(std::size_t& received, Clock::time_point deadline);
   std::optional<v1::Envelope> read(Clock::time_point deadline, bool until_signal);
   void keep(v1::Envelope message);
   [[noreturn]] void throw_gone();
@@ -60,6 +63,7 @@ class Connection {
   std::string name_;
   std::chrono::milliseconds timeout_;
   StreamSocket socket_;
+  std::optional<Tls> tls_;
   proto::FrameReader reader_{proto::kReplyLimit};
   std::vector<char> chunk_;
   v1::Hello daemon_;

@@ -7,9 +7,6 @@
 namespace haptic::ipc {
 namespace {
 
-// a client that needs more than these asks for the same frames twice
-constexpr std::size_t kSubscriptionsPerClient = 16;
-
 // a client that names more wants all
 constexpr int kNames = 1024;
 
@@ -75,8 +72,8 @@ void handle_subscribe(Desk& desk, const Caller& caller, const v1::Request& reque
     reply.fail(*error);
     return;
   }
-  if (desk.publisher.subscriptions_of(caller.id) >= kSubscriptionsPerClient) {
-    reply.fail(v1::Error::BUSY, "a client can have " + std::to_string(kSubscriptionsPerClient) +
+  if (desk.publisher.subscriptions_of(caller.id) >= caller.subscriptions) {
+    reply.fail(v1::Error::BUSY, "a client can have " + std::to_string(caller.subscriptions) +
                                     " subscriptions; end one of them");
     return;
   }

@@ -16,7 +16,8 @@ const std::map<std::string, v1::Role>& expected_roles() {
       {"load_scene", v1::SCRIPT},   {"reset_scene", v1::SCRIPT},   {"arm", v1::DRIVE},
       {"disarm", v1::SCRIPT},       {"pause", v1::SCRIPT},         {"resume", v1::SCRIPT},
       {"step", v1::SCRIPT},         {"get_stats", v1::OBSERVE},    {"subscribe", v1::OBSERVE},
-      {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT}};
+      {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT},
+      {"acquire_drive", v1::DRIVE}, {"release_drive", v1::DRIVE},  {"heartbeat", v1::DRIVE}};
   return kRoles;
 }
 
@@ -57,7 +58,10 @@ class Office {
 
   std::optional<v1::Response> ask(const v1::Request& request, v1::Role role) {
     std::optional<v1::Response> answer;
-    const Caller caller{.id = 1, .role = role, .sink = {}, .drop_frames = [](std::uint32_t) {}};
+    Caller caller;
+    caller.id = 1;
+    caller.role = role;
+    caller.drop_frames = [](std::uint32_t) {};
     dispatch(desk_, caller, request, Reply(request.id(), [&](v1::Response&& response) {
                EXPECT_FALSE(answer) << "two answers";
                answer = std::move(response);
@@ -75,7 +79,9 @@ class Office {
   ServoLink servo_{*mailbox_, std::chrono::seconds(1), [](const servo::Event&) {}};
   SceneStore scenes_{services_, servo_};
   Publisher publisher_;
-  Desk desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [] { return std::size_t{3}; }};
+  DriveLease lease_{DrivePolicy(), servo_};
+  Desk desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [] { return std::size_t{3}; },
+             lease_};
   std::optional<v1::Response> last_answer_;
 };
 
