@@ -12,7 +12,7 @@ namespace {
 SharedBytes body_of(std::size_t size) {
   // a field that the schema does not know, so that the body can have any size above 3 bytes
   std::string bytes = "\xaa\x06";
-  proto::append_varint(size - 3, bytes);
+  proto::append_varint(size - 2 - proto::varint_size(size - 3), bytes);
   bytes.resize(size, 'x');
   return std::make_shared<const std::string>(bytes);
 }

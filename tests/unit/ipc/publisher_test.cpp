@@ -218,7 +218,8 @@ TEST(Publisher, LooksNamesUpAnewInEachScene) {
 }
 
 TEST(Publisher, AsksForASceneBeforeItsFirstSnapshot) {
-  servo::SnapshotRing ring({});
+  servo::SnapshotRing ring(
+      servo::Capacity{.objects = 4, .fingers = 1, .hips = 1, .contacts = 1, .devices = 1});
   Publisher publisher;
   Collector cup;
   publisher.learn(scene_of(1, {"table", "cup"}));
