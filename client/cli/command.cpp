@@ -7,12 +7,17 @@
 
 namespace haptic::cli {
 
-client::Connection Command::connect(std::chrono::milliseconds patience) const {
+client::Connection& Command::connect(std::chrono::milliseconds patience) const {
+  if (*connection) {
+    (*connection)->set_timeout(patience);
+    return **connection;
+  }
   client::Options options;
   options.address = address;
   options.program = "hapticctl";
   options.timeout = patience;
-  return client::Connection(options);
+  *connection = std::make_unique<client::Connection>(options);
+  return **connection;
 }
 
 void add_common_options(CLI::App& app, Command& command) {

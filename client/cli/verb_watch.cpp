@@ -48,6 +48,9 @@ class Watch {
         take(*message);
       }
     }
+    if (!stop_requested()) {
+      daemon_.unsubscribe(subscription_);  // a script goes on with this connection
+    }
     return kDone;
   }
 
@@ -57,7 +60,7 @@ class Watch {
     rate_hz_ = response.status().rate_hz();
     const double wanted = options_.rate > 0.0 ? options_.rate : json_ ? rate_hz_ : live ? 20.0 : 1.0;
     const auto decimation = static_cast<std::uint32_t>(std::max(1.0, std::round(rate_hz_ / wanted)));
-    daemon_.subscribe(options_.topics, decimation);
+    subscription_ = daemon_.subscribe(options_.topics, decimation);
     if (!json_) {
       names_ = ask_names(daemon_);
     }
@@ -141,7 +144,8 @@ class Watch {
 
   bool json_;
   WatchOptions options_;
-  client::Connection daemon_;
+  client::Connection& daemon_;
+  std::uint32_t subscription_ = 0;
   double rate_hz_ = 0.0;
   Names names_;
   Progress progress_;

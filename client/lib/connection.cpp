@@ -87,6 +87,15 @@ std::uint32_t Connection::subscribe(const std::vector<v1::Topic>& topics, std::u
   return call(std::move(request)).subscribed().subscription();
 }
 
+void Connection::unsubscribe(std::uint32_t subscription) {
+  v1::Request request;
+  request.mutable_unsubscribe()->set_subscription(subscription);
+  call(std::move(request));
+  std::erase_if(kept_, [subscription](const v1::Envelope& message) {
+    return message.has_frame() && message.frame().subscription() == subscription;
+  });
+}
+
 std::optional<v1::Envelope> Connection::receive(std::chrono::milliseconds timeout) {
   if (!kept_.empty()) {
     v1::Envelope first = std::move(kept_.front());

@@ -44,6 +44,12 @@ class Connection {
   /// Returns the number of the subscription. One frame for `decimation` ticks.
   std::uint32_t subscribe(const std::vector<v1::Topic>& topics, std::uint32_t decimation);
 
+  /// Ends a subscription; what of it has arrived already is dropped, but a frame on its way may still come.
+  void unsubscribe(std::uint32_t subscription);
+
+  /// The time for the answer of each call from now on.
+  void set_timeout(std::chrono::milliseconds timeout) noexcept { timeout_ = timeout; }
+
   /// The next frame, event or gap. Nothing if none came in time, or a signal arrived. Throws Unreachable when
   /// the daemon is gone, or why it cut this client off.
   std::optional<v1::Envelope> receive(std::chrono::milliseconds timeout);
