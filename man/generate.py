@@ -220,7 +220,7 @@ def main():
         elif not options.check:
             target.write_text(text, encoding="utf-8")
     if stale:
-        print("differ from the programs and the schema: " + ", ".join(stale) + "; run man/generate.py", file=sys.stderr)
+        print("differ from the programs and the schema: " + ", ".join(stale) + "; cmake --build build/dev --target manual_pages makes them anew", file=sys.stderr)
     return 1 if stale else 0
 
 
