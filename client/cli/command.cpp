@@ -17,7 +17,11 @@ std::string or_environment(const std::string& value, const char* name) {
 
 }  // namespace
 
-client::Connection Command::connect(std::chrono::milliseconds patience) const {
+client::Connection& Command::connect(std::chrono::milliseconds patience) const {
+  if (*connection) {
+    (*connection)->set_timeout(patience);
+    return **connection;
+  }
   client::Options options;
   options.address = address;
   if (address.empty()) {
@@ -34,7 +38,8 @@ client::Connection Command::connect(std::chrono::milliseconds patience) const {
                       or_environment(identity.authority, "HAPTICD_AUTHORITY")};
   options.program = "hapticctl";
   options.timeout = patience;
-  return client::Connection(options);
+  *connection = std::make_unique<client::Connection>(options);
+  return **connection;
 }
 
 void add_common_options(CLI::App& app, Command& command) {

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "client/cli/exit_code.h"
@@ -14,15 +15,20 @@ namespace haptic::cli {
 struct Command;
 using Action = std::function<ExitCode(Command&)>;
 
+/// The connection of a whole run, made when it is first needed.
+using SharedConnection = std::shared_ptr<std::unique_ptr<client::Connection>>;
+
 struct Command {
   std::string address;  // --socket
   std::string server;   // --server
   client::Identity identity;
   bool json = false;  // --json
   Action action;      // of the verb that was chosen
+  SharedConnection connection = std::make_shared<std::unique_ptr<client::Connection>>();
 
-  /// `patience`: for connecting, and for each answer. Throws client::Error.
-  client::Connection connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
+  /// `patience`: for connecting, and for each answer. The verbs of a script share one connection. Throws
+  /// client::Error.
+  client::Connection& connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
 };
 
 /// Adds a verb that runs `action`. It has the common options as hapticctl itself does, so that they may

@@ -53,6 +53,9 @@ class Watch {
         take(*message);
       }
     }
+    if (!stop_requested()) {
+      daemon_.unsubscribe(subscription_);  // a script goes on with this connection
+    }
     return kDone;
   }
 
@@ -71,7 +74,7 @@ class Watch {
     wish.mutable_finger()->Assign(options_.fingers.begin(), options_.fingers.end());
     wish.mutable_object()->Assign(options_.objects.begin(), options_.objects.end());
     wish.set_only_in_contact(options_.only_in_contact);
-    daemon_.subscribe(wish);
+    subscription_ = daemon_.subscribe(wish);
     if (!json_) {
       ask_for_names();
     }
@@ -196,7 +199,8 @@ class Watch {
 
   bool json_;
   WatchOptions options_;
-  client::Connection daemon_;
+  client::Connection& daemon_;
+  std::uint32_t subscription_ = 0;
   double rate_hz_ = 0.0;
   Names names_;
   Progress progress_;

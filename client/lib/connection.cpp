@@ -109,6 +109,15 @@ std::uint32_t Connection::subscribe(v1::Subscribe subscription) {
   return call(std::move(request)).subscribed().subscription();
 }
 
+void Connection::unsubscribe(std::uint32_t subscription) {
+  v1::Request request;
+  request.mutable_unsubscribe()->set_subscription(subscription);
+  call(std::move(request));
+  std::erase_if(kept_, [subscription](const v1::Envelope& message) {
+    return message.has_frame() && message.frame().subscription() == subscription;
+  });
+}
+
 std::optional<v1::Envelope> Connection::receive(std::chrono::milliseconds timeout) {
   const Clock::time_point deadline = Clock::now() + timeout;
   while (kept_.empty()) {

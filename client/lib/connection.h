@@ -48,6 +48,12 @@ class Connection {
   /// With all that can be chosen. Throws NotFound for a finger or an object that is not there.
   std::uint32_t subscribe(v1::Subscribe subscription);
 
+  /// Ends a subscription; what of it has arrived already is dropped, but a frame on its way may still come.
+  void unsubscribe(std::uint32_t subscription);
+
+  /// The time for the answer of each call from now on.
+  void set_timeout(std::chrono::milliseconds timeout) noexcept { timeout_ = timeout; }
+
   /// The next frame, event or gap; frames of a batch come one by one. Nothing if none came in time, or a
   /// signal arrived. Throws Unreachable when the daemon is gone, or why it cut this client off.
   std::optional<v1::Envelope> receive(std::chrono::milliseconds timeout);

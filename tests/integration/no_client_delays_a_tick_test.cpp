@@ -68,7 +68,9 @@ class Siege {
                                                                            .devices = {},
                                                                            .real_time = {},
                                                                            .scene = {},
-                                                                           .build_scene = {}});
+                                                                           .running = {},
+                                                                           .build_scene = {},
+                                                                           .edit_scene = {}});
     threads_.emplace_back([this](const std::stop_token&) { server_->run(); });
     threads_.emplace_back([this](const std::stop_token& stop) { flood(stop); });
     threads_.emplace_back([this](const std::stop_token& stop) { stall(stop); });

@@ -86,16 +86,19 @@ std::uint64_t forces_while_asked(v1::Role role, const std::vector<v1::Request>& 
                     .devices = {},
                     .real_time = {},
                     .scene = test::example_scene(),
-                    .build_scene = test::build_example};
+                    .running = {},
+                    .build_scene = test::build_example,
+                    .edit_scene = {}};
   ServoLink link(rig.mailbox(), std::chrono::seconds(60), [](const servo::Event&) {});
   SceneStore scenes(services, link);
   Publisher publisher;
+  publisher.learn(scenes.current());
   DriveLease lease(DrivePolicy(), link);
   Desk desk{services, link, scenes, publisher, SteadyClock::now(), [] { return std::size_t{1}; }, lease};
   Caller caller;
   caller.id = 1;
   caller.role = role;
-  caller.sink = [](std::uint32_t, std::uint64_t, SharedBytes) {};
+  caller.sink = [](const OutgoingFrame&) {};
   caller.drop_frames = [](std::uint32_t) {};
 
   std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
@@ -108,7 +111,7 @@ std::uint64_t forces_while_asked(v1::Role role, const std::vector<v1::Request>& 
     }
     rig.tick();
     link.poll(SteadyClock::now());
-    publisher.drain(rig.mailbox().snapshots);
+    publisher.drain(rig.mailbox().snapshots, [&] { publisher.learn(scenes.current()); });
     for (const std::size_t device : {0U, 1U}) {
       unsigned char bytes[sizeof(glm::dvec3)];
       std::memcpy(bytes, &rig.device(device).written.force, sizeof(bytes));
