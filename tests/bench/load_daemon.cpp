@@ -39,7 +39,10 @@ LoadDaemon::~LoadDaemon() {
 }
 
 v1::Stats LoadDaemon::stats(bool reset) const {
-  client::Connection daemon({.address = socket_, .program = "load_bench"});
+  client::Options options;
+  options.address = socket_;
+  options.program = "load_bench";
+  client::Connection daemon(options);
   v1::Request request;
   request.mutable_get_stats()->set_reset(reset);
   return daemon.call(request).stats();

@@ -36,7 +36,8 @@ TEST_F(Completion, OffersVerbs) {
 }
 
 TEST_F(Completion, OffersOptionsOfTheVerb) {
-  EXPECT_EQ(offered("object move box --"), "--help --json --socket --at --turn ");
+  EXPECT_EQ(offered("object move box --"),
+            "--help --json --socket --server --certificate --key --authority --at --turn ");
   EXPECT_EQ(offered("scene save --f"), "--force ");
 }
 
