@@ -124,10 +124,9 @@ void log_rights(const rt::RealtimeReport& report) {
 }
 
 ipc::ServerSettings server_settings(const RunOptions& options, const v1::DaemonConfig& config) {
-  ipc::ServerSettings settings;
-  if (options.socket.empty()) {
-    settings.listen.assign(config.listen().begin(), config.listen().end());
-  } else {
+  ipc::ServerSettings settings = ipc::server_settings(config);
+  if (!options.socket.empty()) {
+    settings.listen.clear();
     settings.listen.emplace_back().mutable_unix()->set_path(options.socket);
   }
   return settings;

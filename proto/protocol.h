@@ -2,8 +2,10 @@
 // What both sides of the wire agree on before the first byte: the version that each tells in its Hello, and
 // the sizes that each accepts.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace haptic::proto {
 
@@ -11,6 +13,13 @@ namespace haptic::proto {
 /// do not know, so any two minors do.
 inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
+
+/// All that Hello.feature can name; the daemon of this version has them all. A name stays for good.
+inline constexpr std::array<std::string_view, 3> kFeatures = {
+    "subscribe.filter",    // Subscribe.finger, object, only_in_contact
+    "subscribe.delivery",  // Subscribe.delivery, Envelope.batch, ticks and topics in Gap
+    "subscribe.events",    // topics EVENTS and STATS
+};
 
 /// The largest message that the daemon accepts from a peer that has not said Hello.
 inline constexpr std::size_t kGreetingLimit = std::size_t{64} * 1024;

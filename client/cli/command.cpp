@@ -3,22 +3,56 @@
 #include <google/protobuf/util/json_util.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace haptic::cli {
 
-client::Connection Command::connect(std::chrono::milliseconds patience) const {
+namespace {
+
+std::string or_environment(const std::string& value, const char* name) {
+  const char* const set = value.empty() ? std::getenv(name) : nullptr;
+  return set == nullptr ? value : set;
+}
+
+}  // namespace
+
+client::Connection& Command::connect(std::chrono::milliseconds patience) const {
+  if (*connection) {
+    (*connection)->set_timeout(patience);
+    return **connection;
+  }
   client::Options options;
   options.address = address;
+  if (address.empty()) {
+    options.address = or_environment(server, "HAPTICD_SERVER");
+    if (!options.address.empty() && !client::parse_address(options.address).path.empty()) {
+      v1::Error error;
+      error.set_code(v1::Error::INVALID);
+      error.set_message("\"" + options.address + "\" is no server; host:port is expected");
+      throw client::Invalid(error);
+    }
+  }
+  options.identity = {or_environment(identity.certificate, "HAPTICD_CERTIFICATE"),
+                      or_environment(identity.key, "HAPTICD_KEY"),
+                      or_environment(identity.authority, "HAPTICD_AUTHORITY")};
   options.program = "hapticctl";
   options.timeout = patience;
-  return client::Connection(options);
+  *connection = std::make_unique<client::Connection>(options);
+  return **connection;
 }
 
 void add_common_options(CLI::App& app, Command& command) {
   app.add_flag("--json", command.json, "print protobuf JSON, one object a line");
   app.add_option("--socket", command.address, "the daemon's socket: a path, or host:port")
       ->type_name("ADDRESS");
+  app.add_option("--server", command.server, "a daemon elsewhere: host:port")->type_name("ADDRESS");
+  app.add_option("--certificate", command.identity.certificate, "for TLS: your certificate")
+      ->type_name("FILE");
+  app.add_option("--key", command.identity.key, "for TLS: its key")->type_name("FILE");
+  app.add_option("--authority", command.identity.authority,
+                 "for TLS: who must have signed the daemon's certificate")
+      ->type_name("FILE");
 }
 
 CLI::App* add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "client/cli/exit_code.h"
@@ -14,21 +15,28 @@ namespace haptic::cli {
 struct Command;
 using Action = std::function<ExitCode(Command&)>;
 
+/// The connection of a whole run, made when it is first needed.
+using SharedConnection = std::shared_ptr<std::unique_ptr<client::Connection>>;
+
 struct Command {
   std::string address;  // --socket
-  bool json = false;    // --json
-  Action action;        // of the verb that was chosen
+  std::string server;   // --server
+  client::Identity identity;
+  bool json = false;  // --json
+  Action action;      // of the verb that was chosen
+  SharedConnection connection = std::make_shared<std::unique_ptr<client::Connection>>();
 
-  /// `patience`: for connecting, and for each answer. Throws client::Error.
-  client::Connection connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
+  /// `patience`: for connecting, and for each answer. The verbs of a script share one connection. Throws
+  /// client::Error.
+  client::Connection& connect(std::chrono::milliseconds patience = std::chrono::seconds(10)) const;
 };
 
-/// Adds a verb that runs `action`. It has --json and --socket as hapticctl itself does, so that they may
+/// Adds a verb that runs `action`. It has the common options as hapticctl itself does, so that they may
 /// stand on either side of the verb.
 CLI::App* add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
                    Action action);
 
-/// Adds --json and --socket.
+/// Adds --json, and where the daemon is.
 void add_common_options(CLI::App& app, Command& command);
 
 /// One line of JSON with the schema's field names; fields that are zero are told, too.

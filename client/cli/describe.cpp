@@ -12,6 +12,7 @@ const char* unit_of(v1::FaultKind kind) {
     case v1::FAULT_OVER_SPEED:
       return " m/s";
     case v1::FAULT_STALE_SAMPLE:
+    case v1::FAULT_LOST_DRIVER:
       return " s";
     case v1::FAULT_MISSED_TICKS:
       return " ticks";
@@ -34,6 +35,8 @@ std::string describe(v1::FaultKind kind) {
       return "stale sample";
     case v1::FAULT_MISSED_TICKS:
       return "missed ticks";
+    case v1::FAULT_LOST_DRIVER:
+      return "lost driver";
     default:
       return fmt::format("fault {}", static_cast<int>(kind));
   }

@@ -1,5 +1,8 @@
 #include "client/cli/look.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "client/cli/command.h"
 #include "client/lib/error.h"
 
@@ -11,21 +14,42 @@ Names ask_names(client::Connection& daemon) {
   return names_of(scene.scene(), devices.devices());
 }
 
-Look look_once(client::Connection& daemon, v1::Topic topic) {
-  daemon.subscribe({topic}, 1);
-  Look look;
-  look.names = ask_names(daemon);
-  while (const auto message = daemon.receive(std::chrono::seconds(2))) {
-    if (!message->has_frame()) {
+Lookout::Lookout(client::Connection& daemon, v1::Topic topic)
+    : daemon_(daemon), subscription_(daemon.subscribe({topic}, 1)), names_(ask_names(daemon)) {}
+
+Lookout::~Lookout() {
+  try {
+    daemon_.unsubscribe(subscription_);
+  } catch (const client::Error&) {
+    // the daemon is gone, and the subscription with it
+  }
+}
+
+std::optional<Look> Lookout::next(std::chrono::milliseconds patience) {
+  const client::Clock::time_point deadline = client::Clock::now() + patience;
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - client::Clock::now());
+    auto message = daemon_.receive(std::max(left, std::chrono::milliseconds(0)));
+    if (!message) {
+      return std::nullopt;
+    }
+    if (!message->has_frame() || message->frame().subscription() != subscription_) {
       continue;
     }
-    if (message->frame().scene_revision() == look.names.scene_revision) {
-      look.frame = message->frame();
-      return look;
+    if (message->frame().scene_revision() > names_.scene_revision) {
+      names_ = ask_names(daemon_);
     }
-    if (message->frame().scene_revision() > look.names.scene_revision) {
-      look.names = ask_names(daemon);
+    // a frame from before an edit has other indices
+    if (message->frame().scene_revision() == names_.scene_revision) {
+      return Look{names_, std::move(*message->mutable_frame())};
     }
+  }
+}
+
+Look look_once(client::Connection& daemon, v1::Topic topic) {
+  Lookout lookout(daemon, topic);
+  if (std::optional<Look> look = lookout.next(std::chrono::seconds(2))) {
+    return std::move(*look);
   }
   throw client::Unreachable("the daemon sends no frames; hapticctl status tells whether it ticks");
 }

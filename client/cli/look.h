@@ -3,6 +3,9 @@
 
 #include <google/protobuf/struct.pb.h>
 
+#include <chrono>
+#include <optional>
+
 #include "client/cli/tables.h"
 #include "client/lib/connection.h"
 
@@ -15,6 +18,24 @@ struct Look {
 
 /// Asks the daemon what the scene and the devices are called.
 Names ask_names(client::Connection& daemon);
+
+/// A subscription to every tick of one topic that ends with this object. Its frames come with the names of
+/// their own scene.
+class Lookout {
+ public:
+  Lookout(client::Connection& daemon, v1::Topic topic);
+  ~Lookout();
+  Lookout(const Lookout&) = delete;
+  Lookout& operator=(const Lookout&) = delete;
+
+  /// Nothing if no frame came in time, or a signal did. Throws client::Error.
+  std::optional<Look> next(std::chrono::milliseconds patience);
+
+ private:
+  client::Connection& daemon_;
+  std::uint32_t subscription_;
+  Names names_;
+};
 
 /// Names and the next frame of the topic, of the same scene. Throws client::Error.
 Look look_once(client::Connection& daemon, v1::Topic topic);

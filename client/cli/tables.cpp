@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "client/cli/describe.h"
 #include "client/cli/table.h"
@@ -27,6 +28,12 @@ Triple triple(const Array& values, int i) {
 template <class Array>
 auto item(const Array& values, int i) {
   return i < values.size() ? values[i] : typename Array::value_type{};
+}
+
+// which one item i is about: a frame that shows a part only has their numbers
+template <class Numbers>
+std::uint32_t number_of(const Numbers& numbers, int i) {
+  return numbers.empty() ? static_cast<std::uint32_t>(i) : item(numbers, i);
 }
 
 std::string name_at(const std::vector<std::string>& names, std::size_t i) {
@@ -81,14 +88,11 @@ Names names_of(const v1::SceneDescription& scene, const v1::DeviceList& devices)
 }
 
 std::vector<FingerSummary> summarise_fingers(const Names& names, const v1::HipsFrame& hips) {
-  const auto hip_count = static_cast<std::size_t>(hips.position_size() / 3);
-  std::vector<bool> touches(hip_count, false);
-  std::vector<bool> slips(hip_count, false);
+  std::map<std::uint32_t, bool> slips;  // by HIP in contact
   for (int i = 0; i < hips.contact_state_size(); ++i) {
-    const std::size_t hip = item(hips.contact_hip(), i);
-    if (hip < hip_count && is_contact(hips, i)) {
-      touches[hip] = true;
-      slips[hip] = slips[hip] || item(hips.contact_slipping(), i);
+    if (is_contact(hips, i)) {
+      bool& slip = slips[item(hips.contact_hip(), i)];
+      slip = slip || item(hips.contact_slipping(), i);
     }
   }
   std::vector<FingerSummary> summaries;
@@ -97,17 +101,25 @@ std::vector<FingerSummary> summarise_fingers(const Names& names, const v1::HipsF
     summary.name = finger.name();
     summary.device = finger.device();
     summary.hips = finger.hips();
-    for (std::size_t hip = finger.first_hip(); hip < hip_count && hip - finger.first_hip() < finger.hips();
-         ++hip) {
-      summary.contacts += touches[hip] ? 1U : 0U;
-      summary.slipping += slips[hip] ? 1U : 0U;
-      const Triple force = triple(hips.force(), static_cast<int>(hip));
+    for (int i = 0; i < hips.position_size() / 3; ++i) {
+      const std::uint32_t hip = number_of(hips.hip(), i);
+      if (hip < finger.first_hip() || hip - finger.first_hip() >= finger.hips()) {
+        continue;
+      }
+      const auto contact = slips.find(hip);
+      summary.contacts += contact != slips.end() ? 1U : 0U;
+      summary.slipping += contact != slips.end() && contact->second ? 1U : 0U;
+      const Triple force = triple(hips.force(), i);
       summary.force[0] += force.x;
       summary.force[1] += force.y;
       summary.force[2] += force.z;
     }
   }
   return summaries;
+}
+
+std::string object_name(const Names& names, const v1::ObjectsFrame& objects, int i) {
+  return name_at(names.objects, number_of(objects.object(), i));
 }
 
 std::string objects_table(const Names& names, const v1::ObjectsFrame& objects) {
@@ -120,8 +132,8 @@ std::string objects_table(const Names& names, const v1::ObjectsFrame& objects) {
                {"turn deg", Align::kLeft}});
   for (int i = 0; i < objects.position_size() / 3; ++i) {
     const Triple at = triple(objects.position(), i);
-    table.add({name_at(names.objects, static_cast<std::size_t>(i)), coordinate(at.x), coordinate(at.y),
-               coordinate(at.z), millimetres_per_second(triple(objects.velocity(), i).length()),
+    table.add({object_name(names, objects, i), coordinate(at.x), coordinate(at.y), coordinate(at.z),
+               millimetres_per_second(triple(objects.velocity(), i).length()),
                newtons(triple(objects.force(), i).length()), turn(objects.orientation(), i)});
   }
   return table.empty() ? "" : table.to_string();

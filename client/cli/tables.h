@@ -31,6 +31,9 @@ struct FingerSummary {
 
 std::vector<FingerSummary> summarise_fingers(const Names& names, const v1::HipsFrame& hips);
 
+/// Of item i of the frame.
+std::string object_name(const Names& names, const v1::ObjectsFrame& objects, int i);
+
 /// Each with a heading; "" where there is nothing to show.
 std::string objects_table(const Names& names, const v1::ObjectsFrame& objects);
 std::string devices_table(const Names& names, const v1::DevicesFrame& devices);

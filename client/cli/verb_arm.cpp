@@ -15,13 +15,13 @@ ExitCode report(const Command& command, const v1::Response& response, const char
 }
 
 ExitCode arm(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   return report(command, call(daemon, [](v1::Request& request) { request.mutable_arm(); }),
                 "armed: devices may push now");
 }
 
 ExitCode disarm(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   return report(command, call(daemon, [](v1::Request& request) { request.mutable_disarm(); }),
                 "disarmed: no device pushes");
 }

@@ -6,7 +6,7 @@ namespace haptic::cli {
 namespace {
 
 ExitCode clear(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_clear_fault(); });
   if (command.json) {
     print_json(response.done());

@@ -20,7 +20,7 @@ std::string joined(const google::protobuf::RepeatedPtrField<std::string>& names)
 double length(const v1::Vector3& v) { return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
 
 ExitCode show_devices(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_list_devices(); });
   if (command.json) {
     for (const v1::DeviceStatus& device : response.devices().device()) {

@@ -23,7 +23,7 @@ void print_fingers(const Look& look) {
 }
 
 ExitCode show_fingers(Command& command, bool hips) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const Look look = look_once(daemon, v1::HIPS);
   if (command.json) {
     print_fingers(look);

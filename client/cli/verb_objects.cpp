@@ -23,7 +23,7 @@ void print_objects(const Look& look) {
 }
 
 ExitCode show_objects(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const Look look = look_once(daemon, v1::OBJECTS);
   if (command.json) {
     print_objects(look);

@@ -19,18 +19,18 @@ ExitCode report(const Command& command, const v1::Response& response, const std:
 }
 
 ExitCode pause(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   return report(command, call(daemon, [](v1::Request& request) { request.mutable_pause(); }), "paused");
 }
 
 ExitCode resume(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   return report(command, call(daemon, [](v1::Request& request) { request.mutable_resume(); }), "running");
 }
 
 ExitCode step(Command& command, std::uint64_t ticks) {
   // the daemon answers when they have run, at 100 Hz in the slowest case
-  client::Connection daemon =
+  client::Connection& daemon =
       command.connect(std::chrono::seconds(10 + std::min<std::uint64_t>(ticks / 100, 3600)));
   return report(command,
                 call(daemon, [ticks](v1::Request& request) { request.mutable_step()->set_ticks(ticks); }),

@@ -24,7 +24,7 @@ std::string title(const v1::SceneDescription& scene) {
 }
 
 ExitCode show(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_get_scene(); });
   const v1::SceneDescription& scene = response.scene();
   if (command.json) {
@@ -55,7 +55,7 @@ ExitCode show(Command& command) {
 }
 
 ExitCode load(Command& command, const std::string& path, bool send) {
-  client::Connection daemon = command.connect(std::chrono::minutes(2));
+  client::Connection& daemon = command.connect(std::chrono::minutes(2));
   const v1::Response response = call(daemon, [&](v1::Request& request) {
     if (send) {
       *request.mutable_load_scene()->mutable_scene() = read_scene_text(path);
@@ -73,7 +73,7 @@ ExitCode load(Command& command, const std::string& path, bool send) {
 }
 
 ExitCode reset(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_reset_scene(); });
   if (command.json) {
     print_json(response.done());
@@ -83,10 +83,35 @@ ExitCode reset(Command& command) {
   return kDone;
 }
 
+ExitCode save(Command& command, const std::string& path, bool force) {
+  const v1::Response response =
+      call(command.connect(), [](v1::Request& request) { request.mutable_get_scene(); });
+  write_scene_text(response.scene().scene(), path, force);
+  if (command.json) {
+    print_json(response.scene());
+  } else {
+    fmt::print("saved {} in {}\n", title(response.scene()), path);
+  }
+  return kDone;
+}
+
+void add_save(CLI::App& scene, Command& command) {
+  struct Save {
+    std::string path;
+    bool force = false;
+  };
+  const auto options = std::make_shared<Save>();
+  CLI::App* verb =
+      add_verb(scene, command, "save", "write the scene that runs to a file",
+               [options](Command& chosen) { return save(chosen, options->path, options->force); });
+  verb->add_option("file", options->path, "a *.scene.txtpb or *.scene.json")->required()->type_name("FILE");
+  verb->add_flag("--force", options->force, "replace the file if there is one");
+}
+
 }  // namespace
 
 void add_scene(CLI::App& app, Command& command) {
-  CLI::App* scene = app.add_subcommand("scene", "show, load or reset the scene");
+  CLI::App* scene = app.add_subcommand("scene", "show, load, save or reset the scene");
   scene->require_subcommand(1);
   add_common_options(*scene, command);
   add_verb(*scene, command, "show", "the scene that runs", show);
@@ -99,9 +124,10 @@ void add_scene(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(*scene, command, "load", "run another scene", [options](Command& chosen) {
     return load(chosen, options->path, options->send);
   });
-  verb->add_option("file", options->path, "a *.scene.txtpb or *.scene.json")->required();
+  verb->add_option("file", options->path, "a *.scene.txtpb or *.scene.json")->required()->type_name("FILE");
   verb->add_flag("--send", options->send,
                  "read the file here, for a daemon that cannot; its shapes must need no mesh file");
+  add_save(*scene, command);
 }
 
 }  // namespace haptic::cli

@@ -46,7 +46,7 @@ std::string transitions(const v1::Stats& stats) {
 }
 
 ExitCode show_stats(Command& command, bool reset) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const v1::Response response =
       call(daemon, [reset](v1::Request& request) { request.mutable_get_stats()->set_reset(reset); });
   const v1::Stats& stats = response.stats();

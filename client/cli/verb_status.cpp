@@ -9,7 +9,7 @@ namespace {
 void line(const char* what, const std::string& value) { fmt::print("{:<13} {}\n", what, value); }
 
 ExitCode show_status(Command& command) {
-  client::Connection daemon = command.connect();
+  client::Connection& daemon = command.connect();
   const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_get_status(); });
   const v1::Status& status = response.status();
   if (command.json) {

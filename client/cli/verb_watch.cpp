@@ -17,8 +17,12 @@ using SteadyClock = std::chrono::steady_clock;
 
 struct WatchOptions {
   std::vector<v1::Topic> topics;
-  double rate = 0.0;     // Hz; 0: 20 on a terminal, 1 in lines, each tick in JSON
-  double seconds = 0.0;  // 0: until stopped
+  std::vector<std::string> fingers;  // none: all
+  std::vector<std::string> objects;  // none: all
+  bool only_in_contact = false;
+  v1::Delivery delivery = v1::DELIVERY_UNSPECIFIED;  // then as the output wants
+  double rate = 0.0;                                 // Hz; 0: 20 on a terminal, 1 in lines, each tick in JSON
+  double seconds = 0.0;                              // 0: until stopped
   std::uint64_t count = 0;
   bool hips = false;
 };
@@ -28,6 +32,7 @@ struct Progress {
   std::uint64_t frames = 0;
   std::uint64_t lost = 0;
   std::string last_event;
+  std::string last_stats;
 };
 
 class Watch {
@@ -48,6 +53,9 @@ class Watch {
         take(*message);
       }
     }
+    if (!stop_requested()) {
+      daemon_.unsubscribe(subscription_);  // a script goes on with this connection
+    }
     return kDone;
   }
 
@@ -57,10 +65,34 @@ class Watch {
     rate_hz_ = response.status().rate_hz();
     const double wanted = options_.rate > 0.0 ? options_.rate : json_ ? rate_hz_ : live ? 20.0 : 1.0;
     const auto decimation = static_cast<std::uint32_t>(std::max(1.0, std::round(rate_hz_ / wanted)));
-    daemon_.subscribe(options_.topics, decimation);
+    v1::Subscribe wish;
+    wish.mutable_topic()->Assign(options_.topics.begin(), options_.topics.end());
+    wish.set_decimation(decimation);
+    wish.set_delivery(options_.delivery != v1::DELIVERY_UNSPECIFIED ? options_.delivery
+                      : live                                        ? v1::LATEST
+                                                                    : v1::LOSSLESS);
+    wish.mutable_finger()->Assign(options_.fingers.begin(), options_.fingers.end());
+    wish.mutable_object()->Assign(options_.objects.begin(), options_.objects.end());
+    wish.set_only_in_contact(options_.only_in_contact);
+    subscription_ = daemon_.subscribe(wish);
     if (!json_) {
-      names_ = ask_names(daemon_);
+      ask_for_names();
     }
+  }
+
+  // only fingers that were asked for are shown
+  void ask_for_names() {
+    names_ = ask_names(daemon_);
+    if (!options_.fingers.empty()) {
+      std::erase_if(names_.fingers, [this](const auto& finger) {
+        return std::find(options_.fingers.begin(), options_.fingers.end(), finger.name()) ==
+               options_.fingers.end();
+      });
+    }
+  }
+
+  bool has_topic(v1::Topic topic) const {
+    return std::find(options_.topics.begin(), options_.topics.end(), topic) != options_.topics.end();
   }
 
   bool enough(SteadyClock::time_point start) const {
@@ -72,36 +104,60 @@ class Watch {
   }
 
   void take(const v1::Envelope& message) {
+    if (message.has_event() && has_topic(v1::EVENTS)) {
+      return;  // it comes as a frame, too
+    }
     if (message.has_frame()) {
       ++progress_.frames;
     }
     if (message.has_gap()) {
       progress_.lost += message.gap().last_sequence() - message.gap().first_sequence() + 1;
     }
-    if (message.has_event()) {
-      progress_.last_event = message.event().message();
-    }
     if (json_) {
       // frames as they are; the rare rest says what it is
       print_json(message.has_frame() ? static_cast<const google::protobuf::Message&>(message.frame())
                                      : message);
+    } else if (message.has_event() || message.frame().has_event()) {
+      show(message.has_event() ? message.event() : message.frame().event());
     } else if (message.has_frame()) {
       show(message.frame());
-    } else if (!screen_ && message.has_event()) {
-      fmt::print("tick {}: {}\n", message.event().tick(), message.event().message());
+    }
+  }
+
+  void show(const v1::Event& event) {
+    progress_.last_event = event.message();
+    if (!screen_) {
+      fmt::print("tick {}: {}\n", event.tick(), event.message());
+      std::fflush(stdout);
     }
   }
 
   void show(const v1::Frame& frame) {
-    if (frame.scene_revision() != names_.scene_revision) {
-      names_ = ask_names(daemon_);
+    if (frame.scene_revision() != names_.scene_revision && !frame.has_stats()) {
+      ask_for_names();
     }
-    if (screen_) {
-      screen_->show(page(frame));
-    } else {
-      fmt::print("{}\n", line(frame));
+    if (frame.has_stats()) {
+      progress_.last_stats = times(frame.stats());
+    }
+    if (!screen_) {
+      fmt::print("{}\n", frame.has_stats() ? progress_.last_stats : line(frame));
       std::fflush(stdout);
+    } else if (!frame.has_stats()) {
+      screen_->show(page(frame));
     }
+  }
+
+  static std::string times(const v1::Stats& stats) {
+    std::string text =
+        fmt::format("tick {}  {} missed", stats.tick(), count_of(stats.missed_ticks(), "tick"));
+    for (const v1::Histogram& stage : stats.stage()) {
+      if (stage.name() == "tick") {
+        text +=
+            fmt::format("  a tick takes {:.1f} us, p99 {:.1f} us, at most {:.1f} us", stage.mean_ns() / 1e3,
+                        static_cast<double>(stage.p99_ns()) / 1e3, static_cast<double>(stage.max_ns()) / 1e3);
+      }
+    }
+    return text;
   }
 
   std::string page(const v1::Frame& frame) const {
@@ -115,7 +171,10 @@ class Watch {
           options_.hips ? hips_table(names_, frame.hips()) : std::string()}) {
       text += table.empty() ? "" : "\n" + table;
     }
-    return text + (progress_.last_event.empty() ? "" : "\n" + progress_.last_event + "\n");
+    for (const std::string& last : {progress_.last_stats, progress_.last_event}) {
+      text += last.empty() ? "" : "\n" + last + "\n";
+    }
+    return text;
   }
 
   // one line for a frame: what a log needs
@@ -124,10 +183,9 @@ class Watch {
     text += frame.paused() ? "  paused" : "";
     const auto& objects = frame.objects().position();
     for (int i = 0; 3 * i + 2 < objects.size(); ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      text += fmt::format(
-          "  {} {} {} {} mm", index < names_.objects.size() ? names_.objects[index] : std::to_string(i),
-          millimetres(objects[3 * i]), millimetres(objects[3 * i + 1]), millimetres(objects[3 * i + 2]));
+      text += fmt::format("  {} {} {} {} mm", object_name(names_, frame.objects(), i),
+                          millimetres(objects[3 * i]), millimetres(objects[3 * i + 1]),
+                          millimetres(objects[3 * i + 2]));
     }
     if (frame.has_hips()) {
       for (const FingerSummary& finger : summarise_fingers(names_, frame.hips())) {
@@ -141,7 +199,8 @@ class Watch {
 
   bool json_;
   WatchOptions options_;
-  client::Connection daemon_;
+  client::Connection& daemon_;
+  std::uint32_t subscription_ = 0;
   double rate_hz_ = 0.0;
   Names names_;
   Progress progress_;
@@ -155,12 +214,30 @@ void add_watch(CLI::App& app, Command& command) {
   options->topics = {v1::OBJECTS, v1::HIPS, v1::DEVICES};
   CLI::App* verb = add_verb(app, command, "watch", "what happens, live; Ctrl-C ends it",
                             [options](Command& chosen) { return Watch(chosen, *options).run(); });
-  const std::map<std::string, v1::Topic> topics = {
-      {"objects", v1::OBJECTS}, {"hips", v1::HIPS}, {"devices", v1::DEVICES}};
-  verb->add_option("--topic", options->topics, "objects, hips, devices; default: all")
+  const std::map<std::string, v1::Topic> topics = {{"objects", v1::OBJECTS},
+                                                   {"hips", v1::HIPS},
+                                                   {"devices", v1::DEVICES},
+                                                   {"events", v1::EVENTS},
+                                                   {"stats", v1::STATS}};
+  verb->add_option("--topic", options->topics,
+                   "objects, hips, devices, events, stats; default: the first three. Events are shown in any "
+                   "case; as a topic they have sequence numbers")
       ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
       ->type_name("TOPIC")
       ->delimiter(',');
+  verb->add_option("--finger", options->fingers, "only the HIPs of these; default: of all")
+      ->type_name("NAME")
+      ->delimiter(',');
+  verb->add_option("--object", options->objects, "only these, and contacts with them; default: all")
+      ->type_name("NAME")
+      ->delimiter(',');
+  verb->add_flag("--in-contact", options->only_in_contact, "only HIPs that are in contact");
+  const std::map<std::string, v1::Delivery> deliveries = {{"latest", v1::LATEST}, {"lossless", v1::LOSSLESS}};
+  verb->add_option("--delivery", options->delivery,
+                   "latest: newer frames replace those that wait; lossless: all wait; default: latest on a "
+                   "terminal, else lossless")
+      ->transform(CLI::CheckedTransformer(deliveries, CLI::ignore_case).description(""))
+      ->type_name("HOW");
   verb->add_option("--rate", options->rate,
                    "frames a second; default: 20 on a terminal, 1 in lines, every tick with --json")
       ->check(CLI::PositiveNumber)

@@ -30,6 +30,11 @@ Connection::Connection(const Options& options)
       timeout_(options.timeout),
       socket_(StreamSocket::connect(parse_address(options.address), Clock::now() + options.timeout)),
       chunk_(kChunk) {
+  const Address address = parse_address(options.address);
+  if (address.path.empty() && !options.identity.empty()) {
+    tls_.emplace(options.identity, address.host);
+    tls_->handshake(socket_, Clock::now() + options.timeout);
+  }
   greet(options, Clock::now() + options.timeout);
 }
 
@@ -38,6 +43,9 @@ void Connection::greet(const Options& options, Clock::time_point deadline) {
   v1::Hello& hello = *mine.mutable_hello();
   hello.set_major(options.major);
   hello.set_minor(proto::kProtocolMinor);
+  for (const std::string_view feature : proto::kFeatures) {
+    hello.add_feature(std::string(feature));
+  }
   hello.set_program(options.program);
   hello.set_version(options.version);
   send(mine, deadline);
@@ -73,7 +81,7 @@ v1::Response Connection::call(v1::Request request) {
       throw Unreachable("the daemon at " + name_ + " did not answer within " + seconds(timeout_));
     }
     if (!answer->has_response()) {
-      kept_.push_back(std::move(*answer));
+      keep(std::move(*answer));
       continue;
     }
     if (answer->response().id() != last_request_) {
@@ -87,33 +95,59 @@ v1::Response Connection::call(v1::Request request) {
 }
 
 std::uint32_t Connection::subscribe(const std::vector<v1::Topic>& topics, std::uint32_t decimation) {
-  v1::Request request;
+  v1::Subscribe subscription;
   for (const v1::Topic topic : topics) {
-    request.mutable_subscribe()->add_topic(topic);
+    subscription.add_topic(topic);
   }
-  request.mutable_subscribe()->set_decimation(decimation);
+  subscription.set_decimation(decimation);
+  return subscribe(std::move(subscription));
+}
+
+std::uint32_t Connection::subscribe(v1::Subscribe subscription) {
+  v1::Request request;
+  *request.mutable_subscribe() = std::move(subscription);
   return call(std::move(request)).subscribed().subscription();
 }
 
+void Connection::unsubscribe(std::uint32_t subscription) {
+  v1::Request request;
+  request.mutable_unsubscribe()->set_subscription(subscription);
+  call(std::move(request));
+  std::erase_if(kept_, [subscription](const v1::Envelope& message) {
+    return message.has_frame() && message.frame().subscription() == subscription;
+  });
+}
+
 std::optional<v1::Envelope> Connection::receive(std::chrono::milliseconds timeout) {
-  if (!kept_.empty()) {
-    v1::Envelope first = std::move(kept_.front());
-    kept_.pop_front();
-    return first;
-  }
   const Clock::time_point deadline = Clock::now() + timeout;
-  while (std::optional<v1::Envelope> message = read(deadline, true)) {
+  while (kept_.empty()) {
+    std::optional<v1::Envelope> message = read(deadline, true);
+    if (!message) {
+      return std::nullopt;
+    }
     if (!message->has_response()) {
-      return message;
+      keep(std::move(*message));
     }
   }
-  return std::nullopt;
+  v1::Envelope first = std::move(kept_.front());
+  kept_.pop_front();
+  return first;
+}
+
+void Connection::keep(v1::Envelope message) {
+  if (!message.has_batch()) {
+    kept_.push_back(std::move(message));
+    return;
+  }
+  for (v1::Frame& frame : *message.mutable_batch()->mutable_frame()) {
+    *kept_.emplace_back().mutable_frame() = std::move(frame);
+  }
 }
 
 void Connection::send(const v1::Envelope& envelope, Clock::time_point deadline) {
   std::string bytes;
   proto::append_frame(envelope, bytes);
-  switch (socket_.send(bytes, deadline)) {
+  switch (tls_ ? tls_->send(socket_, bytes, deadline) : socket_.send(bytes, deadline)) {
     case StreamSocket::Outcome::kDone:
       return;
     case StreamSocket::Outcome::kTimedOut:
@@ -121,6 +155,11 @@ void Connection::send(const v1::Envelope& envelope, Clock::time_point deadline) 
     default:
       throw_gone();
   }
+}
+
+StreamSocket::Outcome Connection::receive_some(std::size_t& received, Clock::time_point deadline) {
+  return tls_ ? tls_->receive(socket_, chunk_, received, deadline)
+              : socket_.receive(chunk_, received, deadline);
 }
 
 // the next envelope of a kind this program knows; a goodbye is thrown
@@ -146,7 +185,7 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
       return envelope;
     }
     std::size_t received = 0;
-    switch (socket_.receive(chunk_, received, deadline)) {
+    switch (receive_some(received, deadline)) {
       case StreamSocket::Outcome::kDone:
         reader_.append(std::string_view(chunk_.data(), received));
         break;
@@ -158,7 +197,8 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
       case StreamSocket::Outcome::kTimedOut:
         return std::nullopt;
       case StreamSocket::Outcome::kClosed:
-        throw Unreachable("the daemon at " + name_ + " closed the connection");
+        throw Unreachable("the daemon at " + name_ + " closed the connection" +
+                          (tls_ && !tls_->problem().empty() ? ": " + tls_->problem() : ""));
     }
   }
 }

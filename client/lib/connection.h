@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "client/lib/stream_socket.h"
+#include "client/lib/tls.h"
 #include "haptic/v1/control.pb.h"
 #include "proto/framing.h"
 #include "proto/protocol.h"
@@ -23,6 +24,7 @@ namespace haptic::client {
 
 struct Options {
   std::string address;  // see parse_address(); empty: the default place
+  Identity identity;    // for TLS over TCP; empty: none, and the daemon lets observe only
   std::string program = "client";
   std::string version = HAPTIC_VERSION;
   std::chrono::milliseconds timeout{10'000};  // for connecting with Hello, and for the answer of each call
@@ -43,25 +45,36 @@ class Connection {
 
   /// Returns the number of the subscription. One frame for `decimation` ticks.
   std::uint32_t subscribe(const std::vector<v1::Topic>& topics, std::uint32_t decimation);
+  /// With all that can be chosen. Throws NotFound for a finger or an object that is not there.
+  std::uint32_t subscribe(v1::Subscribe subscription);
 
-  /// The next frame, event or gap. Nothing if none came in time, or a signal arrived. Throws Unreachable when
-  /// the daemon is gone, or why it cut this client off.
+  /// Ends a subscription; what of it has arrived already is dropped, but a frame on its way may still come.
+  void unsubscribe(std::uint32_t subscription);
+
+  /// The time for the answer of each call from now on.
+  void set_timeout(std::chrono::milliseconds timeout) noexcept { timeout_ = timeout; }
+
+  /// The next frame, event or gap; frames of a batch come one by one. Nothing if none came in time, or a
+  /// signal arrived. Throws Unreachable when the daemon is gone, or why it cut this client off.
   std::optional<v1::Envelope> receive(std::chrono::milliseconds timeout);
 
  private:
   void greet(const Options& options, Clock::time_point deadline);
   void send(const v1::Envelope& envelope, Clock::time_point deadline);
+  StreamSocket::Outcome receive_some(std::size_t& received, Clock::time_point deadline);
   std::optional<v1::Envelope> read(Clock::time_point deadline, bool until_signal);
+  void keep(v1::Envelope message);
   [[noreturn]] void throw_gone();
 
   std::string name_;
   std::chrono::milliseconds timeout_;
   StreamSocket socket_;
+  std::optional<Tls> tls_;
   proto::FrameReader reader_{proto::kReplyLimit};
   std::vector<char> chunk_;
   v1::Hello daemon_;
   std::uint64_t last_request_ = 0;
-  std::deque<v1::Envelope> kept_;  // arrived during a call
+  std::deque<v1::Envelope> kept_;  // arrived and not yet received
 };
 
 }  // namespace haptic::client

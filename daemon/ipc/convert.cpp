@@ -19,6 +19,8 @@ const char* words_of(v1::FaultKind kind) noexcept {
       return "no new sample";
     case v1::FAULT_MISSED_TICKS:
       return "missed ticks";
+    case v1::FAULT_LOST_DRIVER:
+      return "lost driver";
     default:
       return "fault";
   }
@@ -29,6 +31,7 @@ const char* unit_of(v1::FaultKind kind) noexcept {
     case v1::FAULT_OVER_SPEED:
       return " m/s";
     case v1::FAULT_STALE_SAMPLE:
+    case v1::FAULT_LOST_DRIVER:
       return " s";
     default:
       return "";
@@ -64,9 +67,11 @@ v1::FaultKind to_wire(safety::FaultKind kind) noexcept {
     case safety::FaultKind::kStaleSample:
       return v1::FAULT_STALE_SAMPLE;
     case safety::FaultKind::kMissedTicks:
+      return v1::FAULT_MISSED_TICKS;
+    case safety::FaultKind::kLostDriver:
       break;
   }
-  return v1::FAULT_MISSED_TICKS;
+  return v1::FAULT_LOST_DRIVER;
 }
 
 v1::Fault to_wire(const safety::Fault& fault, std::span<const v1::DeviceDescription> devices) {

@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <string>
 
+#include "ipc/drive_lease.h"
 #include "ipc/publisher.h"
 #include "ipc/reply.h"
 #include "ipc/scene_store.h"
@@ -18,6 +20,8 @@ namespace haptic::ipc {
 struct Caller {
   ClientId id = 0;
   v1::Role role = v1::ROLE_UNSPECIFIED;
+  std::string name;                                // for others to read
+  std::size_t subscriptions = 16;                  // that it can have
   FrameSink sink;                                  // for its subscriptions
   std::function<void(std::uint32_t)> drop_frames;  // of a subscription that has ended
 };
@@ -30,6 +34,7 @@ struct Desk {
   Publisher& publisher;
   SteadyClock::time_point started;
   std::function<std::size_t()> count_clients;
+  DriveLease& lease;
 };
 
 /// The least role that the request needs; ROLE_UNSPECIFIED if this daemon does not know the call.

@@ -102,4 +102,12 @@ void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Reques
   }
 }
 
+void handle_arm(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply) {
+  if (const auto refusal = desk.lease.refusal(caller.id)) {
+    reply.fail(v1::Error::REFUSED, *refusal + "; only its holder can arm");
+    return;
+  }
+  handle_servo_command(desk, caller, request, reply);
+}
+
 }  // namespace haptic::ipc

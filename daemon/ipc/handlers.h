@@ -18,6 +18,11 @@ void handle_load_scene(Desk& desk, const Caller& caller, const v1::Request& requ
 void handle_edit_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_servo.cpp: what the servo thread does itself
 void handle_servo_command(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+void handle_arm(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+// handle_drive.cpp
+void handle_acquire_drive(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+void handle_release_drive(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+void handle_heartbeat(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_stats.cpp
 void handle_get_stats(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_subscribe.cpp

@@ -228,7 +228,7 @@ int listen_tcp(const v1::Listen::Tcp& config) {
   } else {
     throw ListenError("listen.tcp.address: \"" + config.address() + "\" is no IPv4 or IPv6 address");
   }
-  if (!is_loopback(address)) {
+  if (!config.has_tls() && !is_loopback(address)) {
     throw ListenError("listen.tcp.address: " + config.address() +
                       " is not loopback; without TLS the daemon listens on 127.0.0.1 or ::1 only");
   }

@@ -60,8 +60,8 @@ class UnixListener {
   Descriptor socket_;
 };
 
-/// A TCP socket that listens; the caller owns it. Throws ListenError; an address that is not loopback is
-/// refused.
+/// A TCP socket that listens; the caller owns it. Throws ListenError; without TLS an address that is not
+/// loopback is refused.
 int listen_tcp(const v1::Listen::Tcp& config);
 
 }  // namespace haptic::ipc

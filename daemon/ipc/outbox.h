@@ -1,11 +1,12 @@
 #pragma once
-// What waits to be sent to one client. Two queues:
+// What waits to be sent to one client. Two kinds of queue:
 //
 //     control: responses, events    never dropped; a client that lets it overflow is cut off
-//     data:    frames               bounded; the oldest are dropped
+//     data:    frames, one queue for each subscription; bounded together, the oldest of all are dropped
 //
-// Whatever frames are missing, dropped here or lost before, the next frame of that subscription is preceded
-// by a Gap that tells which. Control goes first. Pure: knows no socket. io thread.
+// A subscription that wants the latest only has at most one frame waiting. Whatever frames are missing,
+// dropped here or lost before, the next frame of that subscription is preceded by a Gap that tells which.
+// Control goes first. Pure: knows no socket. io thread.
 
 #include <cstdint>
 #include <deque>
@@ -13,6 +14,8 @@
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "ipc/encode.h"
 
 namespace haptic::ipc {
 
@@ -31,6 +34,27 @@ struct Piece {
   SharedBytes shared;
 };
 
+/// What frames that a client does not get were about.
+struct Loss {
+  TopicSet topics = 0;  // 0: none is lost
+  std::uint64_t first_tick = 0;
+  std::uint64_t last_tick = 0;
+
+  /// As if both were one; `later` came after.
+  void add(const Loss& later) noexcept;
+};
+
+/// A frame on its way to one subscription, without its head (encode.h).
+struct OutgoingFrame {
+  std::uint32_t subscription = 0;
+  std::uint64_t sequence = 0;  // starts at 1 and ascends
+  v1::Delivery delivery = v1::DELIVERY_UNSPECIFIED;
+  TopicSet topics = 0;
+  std::uint64_t tick = 0;
+  Loss lost_before{};  // between the frame before and this, where their sequences say so
+  SharedBytes body;
+};
+
 class Outbox {
  public:
   explicit Outbox(const OutboxLimits& limits) noexcept : limits_(limits) {}
@@ -38,9 +62,8 @@ class Outbox {
   /// A whole message with its length. False if there is no room: the client must be cut off.
   bool push_control(std::string message);
 
-  /// A frame, without its head (encode.h). Sequences of a subscription start at 1 and ascend. Drops the
-  /// oldest frames if there is no room.
-  void push_frame(std::uint32_t subscription, std::uint64_t sequence, SharedBytes body);
+  /// Drops the oldest frames if there is no room, and for v1::LATEST what waits of the subscription.
+  void push_frame(OutgoingFrame frame);
 
   /// Drops the frames of a subscription that has ended.
   void forget(std::uint32_t subscription);
@@ -52,19 +75,26 @@ class Outbox {
 
  private:
   struct Waiting {
-    std::uint32_t subscription;
-    std::uint64_t sequence;
-    SharedBytes body;
+    std::uint64_t arrival;
+    OutgoingFrame frame;
+  };
+  struct Queue {
+    std::deque<Waiting> frames;
+    Loss lost{};                  // before the next frame that comes
+    std::uint64_t last_sent = 0;  // sequence
   };
 
-  void drop_oldest();
+  Queue* oldest();
+  void drop_front(Queue& queue);
+  std::size_t take_frames(Queue& queue, std::vector<Piece>& pieces);
 
   OutboxLimits limits_;
   std::deque<std::string> control_;
   std::size_t control_bytes_ = 0;
-  std::deque<Waiting> data_;
+  std::map<std::uint32_t, Queue> queues_;  // by subscription
+  std::uint64_t arrivals_ = 0;
+  std::size_t data_frames_ = 0;
   std::size_t data_bytes_ = 0;
-  std::map<std::uint32_t, std::uint64_t> last_sent_;  // sequence, by subscription
 };
 
 }  // namespace haptic::ipc

@@ -2,28 +2,15 @@
 // The daemon's side of the wire, on one thread: accepts clients, answers them, publishes frames and events.
 // Between it and the servo thread there is only the mailbox: no client can delay a tick.
 
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "ipc/authoriser.h"
 #include "ipc/listen_socket.h"
+#include "ipc/server_settings.h"
 #include "ipc/services.h"
-#include "ipc/session_limits.h"
 
 namespace haptic::ipc {
-
-struct ServerSettings {
-  std::vector<v1::Listen> listen;  // empty: a Unix socket at the default place
-  SessionLimits session;
-  std::size_t clients = 64;
-  std::chrono::milliseconds poll_period{2};        // of mailbox; 64 snapshots must not come in it
-  std::chrono::milliseconds servo_patience{2000};  // for the answer to a command
-
-  /// Decides instead of the peer's credentials, in tests.
-  std::function<std::optional<v1::Role>(const PeerCredentials&)> role_of;
-};
 
 class Server {
  public:

@@ -2,9 +2,9 @@
 
 #include <spdlog/spdlog.h>
 
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/write.hpp>
 #include <exception>
+
+#include "ipc/message_counts.h"
 
 namespace haptic::ipc {
 namespace asio = boost::asio;
@@ -21,28 +21,31 @@ std::string version_text(std::uint32_t major, std::uint32_t minor) {
 
 }  // namespace
 
-Session::Session(ClientId id, Socket socket, std::optional<v1::Role> role, const SessionLimits& limits,
+Session::Session(ClientId id, std::shared_ptr<Stream> stream, Peer peer, const SessionLimits& limits,
                  Desk& desk, OnEnd on_end)
     : id_(id),
-      socket_(std::move(socket)),
-      role_(role),
+      stream_(std::move(stream)),
+      peer_(std::move(peer)),
       limits_(limits),
       desk_(desk),
       on_end_(std::move(on_end)),
-      timer_(socket_.get_executor()),
+      timer_(stream_->executor()),
       reader_(limits.greeting_bytes),
       chunk_{},
-      outbox_(limits.outbox) {
+      outbox_(limits.outbox),
+      rate_(limits.requests_per_second, SteadyClock::now()) {
   caller_.id = id;
-  caller_.role = role.value_or(v1::ROLE_UNSPECIFIED);
+  caller_.role = peer_.role.value_or(v1::ROLE_UNSPECIFIED);
+  caller_.name = peer_.name;
+  caller_.subscriptions = limits.subscriptions;
 }
 
 void Session::start() {
   const std::weak_ptr<Session> weak = weak_from_this();
-  caller_.sink = [weak](std::uint32_t subscription, std::uint64_t sequence, SharedBytes body) {
+  caller_.sink = [weak](const OutgoingFrame& frame) {
     const auto self = weak.lock();
     if (self && self->state_ == State::kServing) {
-      self->outbox_.push_frame(subscription, sequence, std::move(body));
+      self->outbox_.push_frame(frame);
       self->write();
     }
   };
@@ -62,17 +65,17 @@ void Session::start() {
 }
 
 void Session::read() {
-  socket_.async_read_some(asio::buffer(chunk_),
-                          [self = shared_from_this()](const error_code& error, std::size_t size) {
-                            if (error) {
-                              self->end();
-                              return;
-                            }
-                            self->take_bytes(size);
-                            if (self->state_ != State::kEnded) {
-                              self->read();
-                            }
-                          });
+  stream_->read_some(asio::buffer(chunk_),
+                     [self = shared_from_this()](const error_code& error, std::size_t size) {
+                       if (error) {
+                         self->end();
+                         return;
+                       }
+                       self->take_bytes(size);
+                       if (self->state_ != State::kEnded) {
+                         self->read();
+                       }
+                     });
 }
 
 void Session::take_bytes(std::size_t size) {
@@ -111,9 +114,12 @@ void Session::take_hello(const v1::Envelope& envelope) {
     cut_off(make_error(v1::Error::INVALID, "the first message must be hello"));
     return;
   }
-  if (!role_) {
-    cut_off(make_error(v1::Error::REFUSED,
-                       "your user may not use this daemon; its config allows groups in listen.unix.allow"));
+  if (!peer_.role) {
+    cut_off(make_error(v1::Error::REFUSED, peer_.refusal));
+    return;
+  }
+  if (const auto error = check_counts(envelope, limits_.items)) {
+    cut_off(*error);
     return;
   }
   const v1::Hello& theirs = envelope.hello();
@@ -137,6 +143,9 @@ v1::Envelope Session::hello() const {
   v1::Hello& mine = *envelope.mutable_hello();
   mine.set_major(proto::kProtocolMajor);
   mine.set_minor(proto::kProtocolMinor);
+  for (const std::string_view feature : proto::kFeatures) {
+    mine.add_feature(std::string(feature));
+  }
   mine.set_program("hapticd");
   mine.set_version(desk_.services.version);
   mine.set_role(caller_.role);
@@ -158,10 +167,7 @@ void Session::take_request(const v1::Request& request) {
     *envelope.mutable_response() = std::move(response);
     self->push_control(envelope);
   });
-  if (open_requests_ > limits_.open_requests) {
-    reply.fail(v1::Error::BUSY, std::to_string(limits_.open_requests) + " requests wait for their answers");
-    return;
-  }
+  if (!is_within_limits(request, reply)) return;
   try {
     dispatch(desk_, caller_, request, reply);
   } catch (const std::exception& error) {
@@ -169,6 +175,30 @@ void Session::take_request(const v1::Request& request) {
     spdlog::error("a request failed unexpectedly: {}", error.what());
     cut_off(make_error(v1::Error::FAILED, "the daemon failed in this request; its log tells more"));
   }
+}
+
+// if not, the request is answered, or the client cut off
+bool Session::is_within_limits(const v1::Request& request, const Reply& reply) {
+  // nobody is ever too busy to end all force
+  const auto verdict = request.has_disarm() ? RequestRate::Verdict::kTaken : rate_.take(SteadyClock::now());
+  const std::string rate = std::to_string(limits_.requests_per_second) + " requests in a second";
+  if (verdict == RequestRate::Verdict::kFlood) {
+    cut_off(make_error(v1::Error::BUSY, "you have sent far more than " + rate + ", which is all you may"));
+    return false;
+  }
+  if (verdict == RequestRate::Verdict::kTooMany) {
+    reply.fail(v1::Error::BUSY, "you may send " + rate + "; wait, and try again");
+    return false;
+  }
+  if (open_requests_ > limits_.open_requests) {
+    reply.fail(v1::Error::BUSY, std::to_string(limits_.open_requests) + " requests wait for their answers");
+    return false;
+  }
+  if (const auto error = check_counts(request, limits_.items)) {
+    reply.fail(*error);
+    return false;
+  }
+  return true;
 }
 
 void Session::tell(const std::string& framed_event) {
@@ -200,6 +230,7 @@ void Session::cut_off(const v1::Error& error) {
     return;
   }
   desk_.publisher.forget(id_);
+  desk_.lease.forget(id_, SteadyClock::now());
   if (state_ == State::kServing) {
     outbox_.clear();
   }
@@ -227,8 +258,7 @@ void Session::write() {
   if (writing_.empty()) {
     if (state_ == State::kLeaving) {
       // the client sees the end after its goodbye; reading goes on until it closes, or time is up
-      error_code ignored;
-      socket_.shutdown(Socket::shutdown_send, ignored);
+      stream_->end_writing();
     }
     return;
   }
@@ -239,7 +269,7 @@ void Session::write() {
       buffers.push_back(asio::buffer(*piece.shared));
     }
   }
-  asio::async_write(socket_, buffers, [self = shared_from_this()](const error_code& error, std::size_t) {
+  stream_->write(buffers, [self = shared_from_this()](const error_code& error, std::size_t) {
     self->writing_.clear();
     if (error) {
       self->end();
@@ -255,10 +285,10 @@ void Session::end() {
   }
   state_ = State::kEnded;
   desk_.publisher.forget(id_);
+  desk_.lease.forget(id_, SteadyClock::now());
   outbox_.clear();
   timer_.cancel();
-  error_code ignored;
-  socket_.close(ignored);
+  stream_->close();
   on_end_(id_);
 }
 

@@ -5,7 +5,6 @@
 //     connected -- hello --> serving -- error, overflow, stop --> leaving (goodbye, then the end)
 
 #include <array>
-#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <memory>
 #include <optional>
@@ -14,18 +13,19 @@
 
 #include "ipc/dispatch.h"
 #include "ipc/outbox.h"
+#include "ipc/peer.h"
+#include "ipc/request_rate.h"
 #include "ipc/session_limits.h"
+#include "ipc/stream.h"
 #include "proto/framing.h"
 
 namespace haptic::ipc {
 
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  using Socket = boost::asio::generic::stream_protocol::socket;
   using OnEnd = std::function<void(ClientId)>;
 
-  /// `role`: what the peer may do; nothing: it is refused, in words, when it says hello.
-  Session(ClientId id, Socket socket, std::optional<v1::Role> role, const SessionLimits& limits, Desk& desk,
+  Session(ClientId id, std::shared_ptr<Stream> stream, Peer peer, const SessionLimits& limits, Desk& desk,
           OnEnd on_end);
 
   void start();
@@ -37,6 +37,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void cut_off(const v1::Error& error);
 
   bool is_serving() const noexcept { return state_ == State::kServing; }
+  const std::string& user() const noexcept { return peer_.user; }
 
  private:
   enum class State { kConnected, kServing, kLeaving, kEnded };
@@ -46,6 +47,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void take_message(std::string_view bytes);
   void take_hello(const v1::Envelope& envelope);
   void take_request(const v1::Request& request);
+  bool is_within_limits(const v1::Request& request, const Reply& reply);
   v1::Envelope hello() const;
 
   void push_control(const v1::Envelope& envelope);
@@ -53,8 +55,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void end();
 
   ClientId id_;
-  Socket socket_;
-  std::optional<v1::Role> role_;
+  std::shared_ptr<Stream> stream_;
+  Peer peer_;
   SessionLimits limits_;
   Desk& desk_;
   OnEnd on_end_;
@@ -65,6 +67,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Outbox outbox_;
   std::vector<Piece> writing_;  // empty: no write is under way
   std::size_t open_requests_ = 0;
+  RequestRate rate_;
   Caller caller_;
 };
 

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <sys/un.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -12,6 +13,9 @@
 
 namespace haptic::load {
 namespace {
+
+constexpr std::uint32_t kKibi = 1024;
+constexpr std::uint32_t kMebi = 1024 * kKibi;
 
 /// Fills one section after the other and checks it.
 class ConfigCheck {
@@ -24,6 +28,8 @@ class ConfigCheck {
     capacity(*config_.mutable_capacity());
     safety(*config_.mutable_safety());
     listeners();
+    limits(*config_.mutable_limits());
+    drive(*config_.mutable_drive());
     if (!config_.scene().empty()) config_.set_scene(relative_to(file_, config_.scene()).string());
     return devices();
   }
@@ -69,6 +75,38 @@ class ConfigCheck {
            [&](double v) { safety.set_max_sample_age(v); });
     count("safety.max_missed_ticks", safety.max_missed_ticks(), 50, {1, 1000000},
           [&](std::uint32_t v) { safety.set_max_missed_ticks(v); });
+  }
+
+  void limits(v1::Limits& limits) const {
+    count("limits.clients", limits.clients(), 64, {1, 4096}, [&](std::uint32_t v) { limits.set_clients(v); });
+    count("limits.clients_per_user", limits.clients_per_user(), 32, {1, 4096},
+          [&](std::uint32_t v) { limits.set_clients_per_user(v); });
+    count("limits.subscriptions", limits.subscriptions(), 16, {1, 1024},
+          [&](std::uint32_t v) { limits.set_subscriptions(v); });
+    count("limits.pending_data", limits.pending_data(), 4 * kMebi, {4 * kKibi, 1024 * kMebi, " bytes"},
+          [&](std::uint32_t v) { limits.set_pending_data(v); });
+    count("limits.pending_control", limits.pending_control(), 4 * kMebi, {4 * kKibi, 1024 * kMebi, " bytes"},
+          [&](std::uint32_t v) { limits.set_pending_control(v); });
+    count("limits.requests_per_second", limits.requests_per_second(), 2000, {1, 1000000},
+          [&](std::uint32_t v) { limits.set_requests_per_second(v); });
+    number("limits.hello", limits.hello(), 5.0, {0.1, 3600.0, " s"}, [&](double v) { limits.set_hello(v); });
+    count("limits.greeting_bytes", limits.greeting_bytes(), 64 * kKibi, {kKibi, kMebi, " bytes"},
+          [&](std::uint32_t v) { limits.set_greeting_bytes(v); });
+    count("limits.request_bytes", limits.request_bytes(), kMebi, {kKibi, 64 * kMebi, " bytes"},
+          [&](std::uint32_t v) { limits.set_request_bytes(v); });
+    count("limits.open_requests", limits.open_requests(), 32, {1, 4096},
+          [&](std::uint32_t v) { limits.set_open_requests(v); });
+    count("limits.items", limits.items(), std::max(16384U, config_.capacity().hips()), {1, 1 << 20},
+          [&](std::uint32_t v) { limits.set_items(v); });
+  }
+
+  void drive(v1::Drive& drive) const {
+    if (drive.on_loss() == v1::Drive::ON_LOSS_UNSPECIFIED) drive.set_on_loss(v1::Drive::FAULT);
+    if (drive.on_loss() < v1::Drive::FAULT || drive.on_loss() > v1::Drive::KEEP) {
+      source_.fail("drive.on_loss", "is no policy (permitted: FAULT, DISARM, KEEP)");
+    }
+    number("drive.heartbeat", drive.heartbeat(), 0.1, {0.01, 10.0, " s"},
+           [&](double v) { drive.set_heartbeat(v); });
   }
 
   std::vector<std::vector<drivers::PathPoint>> devices() {
@@ -136,7 +174,7 @@ class ConfigCheck {
           address = unix_socket(field + ".unix", *listen.mutable_unix());
           break;
         case v1::Listen::kTcp:
-          address = tcp(field + ".tcp", listen.tcp());
+          address = tcp(field + ".tcp", *listen.mutable_tcp());
           break;
         case v1::Listen::ADDRESS_NOT_SET:
           source_.fail(field, "has no address (permitted: unix, tcp)");
@@ -166,22 +204,51 @@ class ConfigCheck {
     return listen.path();
   }
 
-  std::string tcp(const std::string& field, const v1::Listen::Tcp& listen) const {
+  std::string tcp(const std::string& field, v1::Listen::Tcp& listen) const {
     in_addr four{};
     in6_addr six{};
     const bool is_four = ::inet_pton(AF_INET, listen.address().c_str(), &four) == 1;
     const bool is_six = !is_four && ::inet_pton(AF_INET6, listen.address().c_str(), &six) == 1;
+    const bool is_encrypted = listen.has_tls();
     if (!is_four && !is_six) {
-      source_.fail(field + ".address",
-                   in_quotes(listen.address()) + " is not an IP address (permitted: 127.0.0.1, ::1)");
+      source_.fail(field + ".address", in_quotes(listen.address()) + " is not an IP address" +
+                                           (is_encrypted ? "" : " (permitted: 127.0.0.1, ::1)"));
     }
-    if (is_four ? (ntohl(four.s_addr) >> 24U) != 127 : !IN6_IS_ADDR_LOOPBACK(&six)) {
+    if (is_encrypted) {
+      tls(field, listen);
+    } else if (listen.allow_size() > 0) {
+      source_.fail(field + ".allow", "needs tls: only a certificate tells who a client over TCP is");
+    } else if (is_four ? (ntohl(four.s_addr) >> 24U) != 127 : !IN6_IS_ADDR_LOOPBACK(&six)) {
       source_.fail(field + ".address", in_quotes(listen.address()) +
                                            " can be reached from other machines; TCP without TLS is for this"
                                            " one only (permitted: 127.0.0.1, ::1)");
     }
     check_range(source_, field + ".port", listen.port(), {1, 65535});
     return listen.address() + " " + std::to_string(listen.port());
+  }
+
+  void tls(const std::string& field, v1::Listen::Tcp& listen) const {
+    v1::Listen::Tls& tls = *listen.mutable_tls();
+    const std::pair<const char*, std::string*> files[] = {{"certificate", tls.mutable_certificate()},
+                                                          {"key", tls.mutable_key()},
+                                                          {"authority", tls.mutable_authority()}};
+    for (const auto& [name, path] : files) {
+      if (path->empty()) source_.fail(field + ".tls." + name, "is missing: expected the name of a PEM file");
+      *path = relative_to(file_, *path).string();
+    }
+    if (listen.allow_size() == 0) {
+      source_.fail(field,
+                   "allows nobody: expected allow { name: ... role: ... } for each client's certificate");
+    }
+    for (int i = 0; i < listen.allow_size(); ++i) {
+      const std::string allow = field + "." + item("allow", i);
+      if (listen.allow(i).name().empty()) {
+        source_.fail(allow + ".name", "is missing: expected the name in a client's certificate");
+      }
+      if (listen.allow(i).role() < v1::OBSERVE || listen.allow(i).role() > v1::ADMIN) {
+        source_.fail(allow + ".role", "is missing (permitted: OBSERVE, SCRIPT, DRIVE, ADMIN)");
+      }
+    }
   }
 
   v1::DaemonConfig& config_;

@@ -55,11 +55,19 @@ void ForceGuard::arm_at_once() noexcept {
 void ForceGuard::disarm() noexcept { armed_ = false; }
 
 void ForceGuard::latch(const Fault& fault) noexcept {
+  latch_gently(fault);
+  cut_ = true;
+}
+
+void ForceGuard::latch_gently(const Fault& fault) noexcept {
   if (fault_.kind == FaultKind::kNone) fault_ = fault;
   armed_ = false;
 }
 
-void ForceGuard::clear() noexcept { fault_ = Fault{}; }
+void ForceGuard::clear() noexcept {
+  fault_ = Fault{};
+  cut_ = false;
+}
 
 void ForceGuard::latch_measured(FaultKind kind, const GuardInput& input, double value,
                                 double limit) noexcept {
@@ -77,7 +85,7 @@ bool ForceGuard::find_fault(const GuardInput& input) noexcept {
   } else if (armed_ && input.present && input.sample_age > limits_.max_sample_age) {
     latch_measured(FaultKind::kStaleSample, input, input.sample_age, limits_.max_sample_age);
   }
-  return fault_.kind != FaultKind::kNone;
+  return cut_;
 }
 
 GuardOutput ForceGuard::guard(const GuardInput& input, double dt) noexcept {

@@ -7,8 +7,9 @@
 //                    | no, or over-speed, stale sample, missed ticks
 //                    +-> zero in this very tick, and a latched named fault
 //
-// A fault cuts: nothing is known any more of what the force should be. Disarming, and a force that the engine
-// stops giving, go to zero by the slew limit instead (10 ms at the defaults), so that the hand is not kicked.
+// A fault cuts: nothing is known any more of what the force should be. Disarming, a force that the engine
+// stops giving, and a fault of those who drive rather than of what is measured, go to zero by the slew limit
+// instead (10 ms at the defaults), so that the hand is not kicked.
 
 #include <cstdint>
 #include <glm/gtc/quaternion.hpp>
@@ -65,6 +66,10 @@ class ForceGuard {
 
   /// Latches a fault from outside (missed ticks, another device). The first one is kept.
   void latch(const Fault& fault) noexcept;
+  /// The same, but force goes down by the slew limit. A fault that comes meanwhile cuts all the same.
+  void latch_gently(const Fault& fault) noexcept;
+  /// A fault has cut force, and it is zero.
+  bool is_cut() const noexcept { return cut_; }
   /// Forgets the fault; stays disarmed.
   void clear() noexcept;
   const Fault& fault() const noexcept { return fault_; }
@@ -84,6 +89,7 @@ class ForceGuard {
   glm::dvec3 last_force_{0.0};   // N, of the tick before
   glm::dvec3 last_torque_{0.0};  // N m
   Fault fault_;
+  bool cut_ = false;  // by a fault
 };
 
 }  // namespace haptic::safety

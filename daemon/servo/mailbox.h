@@ -51,6 +51,7 @@ enum class CommandKind : std::uint8_t {
   kClearFault,
   kSwapScene,  // `scene` becomes the one that runs; the one that does not comes back in kSceneRetired
   kResetStats,
+  kLatchFault,  // `fault`, while armed: forces go down by the slew limit, and it is latched
 };
 
 struct Command {
@@ -58,6 +59,7 @@ struct Command {
   std::uint64_t request = 0;       // echoed in the answer
   std::uint64_t ticks = 0;         // kStep
   PreparedScene* scene = nullptr;  // kSwapScene: never null; owned by whoever holds the command
+  safety::Fault fault{};           // kLatchFault; its tick is set when it is latched
 };
 
 enum class EventKind : std::uint8_t {

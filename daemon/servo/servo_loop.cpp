@@ -157,9 +157,9 @@ void ServoLoop::guard_forces(const Instant& now) noexcept {
         .force = channel.wanted.force,
         .torque = channel.wanted.torque};
     channel.let_through = channel.guard.guard(input, dt_);
-    if (channel.guard.fault().kind != safety::FaultKind::kNone) latch(channel.guard.fault(), now);
+    if (channel.guard.is_cut()) latch(channel.guard.fault(), now);
   }
-  if (fault_.kind == safety::FaultKind::kNone) return;
+  if (!cut_) return;
   // what one device did stops them all, and in this very tick
   for (Channel& channel : channels_) channel.let_through = {};
 }
@@ -173,10 +173,13 @@ void ServoLoop::write_devices(const Instant& now) noexcept {
 }
 
 void ServoLoop::latch(const safety::Fault& fault, const Instant& now) noexcept {
-  if (fault_.kind != safety::FaultKind::kNone) return;
-  fault_ = fault;
+  if (cut_) return;
+  cut_ = true;
   armed_ = false;
   for (Channel& channel : channels_) channel.guard.latch(fault);
+  // forces may have been going down because of another fault: the first one is kept
+  if (fault_.kind != safety::FaultKind::kNone) return;
+  fault_ = fault;
   send({.kind = EventKind::kFaultLatched, .fault = fault}, now);
 }
 

@@ -80,6 +80,7 @@ class ServoLoop {
   EventKind arm() noexcept;
   EventKind resume(const Instant& now) noexcept;
   EventKind clear_fault() noexcept;
+  EventKind latch_gently(safety::Fault fault, const Instant& now) noexcept;
   EventKind swap_scene(PreparedScene* scene, const Instant& now) noexcept;
   void restart_ramps() noexcept;
   void begin_step(const Command& command) noexcept;
@@ -108,6 +109,7 @@ class ServoLoop {
   bool step_unanswered_ = false;
   std::uint64_t step_request_ = 0;  // to be answered when none is left
   safety::Fault fault_;
+  bool cut_ = false;  // by a fault: no device gets any force
 
   std::uint64_t ticks_run_ = 0;
   std::uint64_t missed_ticks_ = 0;

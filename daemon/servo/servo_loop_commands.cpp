@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kCommandsPerTick = 8;
 
-// a command is only taken when there is room for all that may come of it (its answer, and a retired scene or
-// the answer to a step), so that neither an answer nor memory to free is ever lost
+// a command is only taken when there is room for all that may come of it (its answer, and a retired scene,
+// a latched fault or the answer to a step), so that neither an answer nor memory to free is ever lost
 constexpr std::size_t kEventsPerCommand = 2;
 
 constexpr std::uint64_t kForever = ~std::uint64_t{0};
@@ -64,6 +64,9 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
       stats_ = {};
       scene_->world.clear_transitions();
       break;
+    case CommandKind::kLatchFault:
+      answer = latch_gently(command.fault, now);
+      break;
   }
   send({.kind = answer, .command = command.kind, .request = command.request, .fault = fault_}, now);
 }
@@ -89,7 +92,18 @@ EventKind ServoLoop::resume(const Instant& now) noexcept {
 EventKind ServoLoop::clear_fault() noexcept {
   if (fault_.kind == safety::FaultKind::kNone) return EventKind::kNothingToDo;
   fault_ = {};
+  cut_ = false;
   for (Channel& channel : channels_) channel.guard.clear();
+  return EventKind::kDone;
+}
+
+EventKind ServoLoop::latch_gently(safety::Fault fault, const Instant& now) noexcept {
+  if (!armed_) return EventKind::kNothingToDo;
+  fault.tick = now.tick;
+  fault_ = fault;
+  armed_ = false;
+  for (Channel& channel : channels_) channel.guard.latch_gently(fault);
+  send({.kind = EventKind::kFaultLatched, .fault = fault}, now);
   return EventKind::kDone;
 }
 

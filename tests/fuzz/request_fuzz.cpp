@@ -11,6 +11,7 @@
 #include "ipc/dispatch.h"
 #include "proto/framing.h"
 #include "proto/protocol.h"
+#include "tests/fuzz/schema_mutator.h"
 
 namespace {
 
@@ -78,4 +79,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   return 0;
+}
+
+// three times of four as the schema allows; bytes at random for the rest
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+  haptic::fuzz::Random random(seed);
+  const std::size_t mutated =
+      random() % 4 == 0 ? 0 : haptic::fuzz::mutate_conversation(data, size, max_size, random);
+  return mutated > 0 ? mutated : LLVMFuzzerMutate(data, size, max_size);
 }

@@ -6,6 +6,7 @@
 #include "engine/world.h"
 #include "load/config_file.h"
 #include "load/scene_file.h"
+#include "tests/fuzz/schema_mutator.h"
 #include "tests/fuzz/text_input.h"
 
 namespace {
@@ -48,4 +49,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   return 0;
+}
+
+// three times of four as the schema allows; bytes at random for the rest, and for JSON
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+  haptic::fuzz::Random random(seed);
+  haptic::v1::Scene scratch;
+  const std::size_t mutated =
+      random() % 4 == 0 ? 0 : haptic::fuzz::mutate_text(scratch, data, size, max_size, random);
+  return mutated > 0 ? mutated : LLVMFuzzerMutate(data, size, max_size);
 }

@@ -101,6 +101,14 @@ class FakeServo {
         }
         fault_ = {};
         return servo::EventKind::kDone;
+      case servo::CommandKind::kLatchFault:
+        if (!armed_) {
+          return servo::EventKind::kNothingToDo;
+        }
+        armed_ = false;
+        fault_ = command.fault;
+        mailbox_.events.push({.kind = servo::EventKind::kFaultLatched, .tick = tick_, .fault = fault_});
+        return servo::EventKind::kDone;
       case servo::CommandKind::kSwapScene:
         mailbox_.events.push(
             {.kind = servo::EventKind::kSceneRetired, .command = command.kind, .scene = scene_.release()});

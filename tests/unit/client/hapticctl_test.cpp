@@ -81,6 +81,36 @@ TEST_F(Hapticctl, ExitsWithFiveWhenTheDaemonIsUnreachable) {
             "running?\n");
 }
 
+TEST_F(Hapticctl, MakesCertificatesWithWhichItIsLetIn) {
+  const test::TemporaryFolder folder;
+  const std::string lab = folder.file("lab");
+  const std::string make = "certificates " + lab + " --server-name 127.0.0.1 --client alice --client bob";
+  const Finished made = run(make);
+  EXPECT_EQ(made.code, 0) << made.output;
+  EXPECT_TRUE(contains(made.output, "allow { name: \"bob\" role: OBSERVE }")) << made.output;
+  EXPECT_TRUE(contains(made.output, "key: \"" + lab + "/server.key\"")) << made.output;
+  EXPECT_EQ(run(make).code, 1);
+
+  ipc::ServerSettings settings;
+  v1::Listen::Tcp& tcp = *settings.listen.emplace_back().mutable_tcp();
+  tcp.set_address("127.0.0.1");
+  tcp.mutable_tls()->set_certificate(lab + "/server.crt");
+  tcp.mutable_tls()->set_key(lab + "/server.key");
+  tcp.mutable_tls()->set_authority(lab + "/authority.crt");
+  v1::Listen::AllowName& allow = *tcp.add_allow();
+  allow.set_name("alice");
+  allow.set_role(v1::OBSERVE);
+  serve(settings);
+  const auto as = [&](const std::string& name, const std::string& verb) {
+    return run(verb + " --server " + daemon_->address() + " --certificate " + lab + "/" + name +
+               ".crt --key " + lab + "/" + name + ".key --authority " + lab + "/authority.crt");
+  };
+  EXPECT_EQ(as("alice", "status").code, 0) << as("alice", "status").output;
+  EXPECT_EQ(as("alice", "arm").code, 4);
+  EXPECT_EQ(as("bob", "status").code, 4);
+  EXPECT_EQ(run("status --server nowhere").code, 1);
+}
+
 TEST_F(Hapticctl, ExitsWithSixtyFourWhenItIsMisused) {
   for (const char* arguments : {"", "frobnicate", "status --nonsense", "step 0", "step -3",
                                 "watch --topic smell", "scene", "scene load", "watch --rate 0"}) {

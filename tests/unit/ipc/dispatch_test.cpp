@@ -16,7 +16,8 @@ const std::map<std::string, v1::Role>& expected_roles() {
       {"load_scene", v1::SCRIPT},   {"reset_scene", v1::SCRIPT},   {"arm", v1::DRIVE},
       {"disarm", v1::SCRIPT},       {"pause", v1::SCRIPT},         {"resume", v1::SCRIPT},
       {"step", v1::SCRIPT},         {"get_stats", v1::OBSERVE},    {"subscribe", v1::OBSERVE},
-      {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT}};
+      {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT},
+      {"acquire_drive", v1::DRIVE}, {"release_drive", v1::DRIVE},  {"heartbeat", v1::DRIVE}};
   return kRoles;
 }
 
@@ -57,7 +58,10 @@ class Office {
 
   std::optional<v1::Response> ask(const v1::Request& request, v1::Role role) {
     std::optional<v1::Response> answer;
-    const Caller caller{.id = 1, .role = role, .sink = {}, .drop_frames = [](std::uint32_t) {}};
+    Caller caller;
+    caller.id = 1;
+    caller.role = role;
+    caller.drop_frames = [](std::uint32_t) {};
     dispatch(desk_, caller, request, Reply(request.id(), [&](v1::Response&& response) {
                EXPECT_FALSE(answer) << "two answers";
                answer = std::move(response);
@@ -75,7 +79,9 @@ class Office {
   ServoLink servo_{*mailbox_, std::chrono::seconds(1), [](const servo::Event&) {}};
   SceneStore scenes_{services_, servo_};
   Publisher publisher_;
-  Desk desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [] { return std::size_t{3}; }};
+  DriveLease lease_{DrivePolicy(), servo_};
+  Desk desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [] { return std::size_t{3}; },
+             lease_};
   std::optional<v1::Response> last_answer_;
 };
 
@@ -181,6 +187,42 @@ TEST(Dispatch, RefusesSubscriptionsWithoutOrWithUnknownTopics) {
   EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().code(), v1::Error::INVALID);
   request.mutable_subscribe()->add_topic(static_cast<v1::Topic>(99));
   EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().code(), v1::Error::INVALID);
+}
+
+TEST(Dispatch, NamesTheFieldOfAFilterThatFindsNothing) {
+  Office office;
+  v1::Request request = request_of("subscribe");
+  v1::Subscribe& wish = *request.mutable_subscribe();
+  wish.add_topic(v1::HIPS);
+  wish.add_finger("thumb");
+  wish.add_finger("toe");
+  v1::Error error = office.ask(request, v1::OBSERVE)->error();
+  EXPECT_EQ(error.code(), v1::Error::NOT_FOUND);
+  EXPECT_EQ(error.field(), "subscribe.finger[1]");
+  EXPECT_EQ(error.message(), "the scene has no finger \"toe\"");
+  wish.mutable_finger()->RemoveLast();
+  wish.add_object("moon");
+  error = office.ask(request, v1::OBSERVE)->error();
+  EXPECT_EQ(error.code(), v1::Error::NOT_FOUND);
+  EXPECT_EQ(error.field(), "subscribe.object[0]");
+  wish.set_object(0, "block");
+  EXPECT_FALSE(office.ask(request, v1::OBSERVE)->has_error());
+}
+
+TEST(Dispatch, RefusesAnUnknownDeliveryAndTooManyNames) {
+  Office office;
+  v1::Request request = request_of("subscribe");
+  v1::Subscribe& wish = *request.mutable_subscribe();
+  wish.add_topic(v1::STATS);
+  wish.set_delivery(static_cast<v1::Delivery>(9));
+  EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().field(), "subscribe.delivery");
+  wish.set_delivery(v1::LOSSLESS);
+  for (int i = 0; i < 1025; ++i) {
+    wish.add_object("block");
+  }
+  EXPECT_EQ(office.ask(request, v1::OBSERVE)->error().code(), v1::Error::INVALID);
+  wish.mutable_object()->RemoveLast();
+  EXPECT_FALSE(office.ask(request, v1::OBSERVE)->has_error());
 }
 
 TEST(Dispatch, BoundsTheSubscriptionsOfAClient) {

@@ -36,7 +36,7 @@ servo::Snapshot example_snapshot() {
 
 TEST(EncodeFrame, PacksEachTopicInTheOrderOfTheSchema) {
   v1::Frame frame;
-  fill_frame(example_snapshot(), topic_bit(v1::OBJECTS) | topic_bit(v1::HIPS), 1000, frame);
+  fill_frame(example_snapshot(), topic_bit(v1::OBJECTS) | topic_bit(v1::HIPS), {}, 1000, frame);
   EXPECT_EQ(frame.tick(), 300U);
   EXPECT_EQ(frame.realtime_ns(), 6'000U);  // monotonic + offset
   EXPECT_EQ(frame.scene_revision(), 4U);
@@ -57,7 +57,7 @@ TEST(EncodeFrame, PacksEachTopicInTheOrderOfTheSchema) {
 
 TEST(EncodeFrame, WithItsHeadIsTheEnvelopeThatProtobufWouldWrite) {
   v1::Frame frame;
-  fill_frame(example_snapshot(), topic_bit(v1::OBJECTS) | topic_bit(v1::DEVICES), 0, frame);
+  fill_frame(example_snapshot(), topic_bit(v1::OBJECTS) | topic_bit(v1::DEVICES), {}, 0, frame);
   const std::string body = frame.SerializeAsString();
   for (const std::uint64_t sequence : {std::uint64_t{1}, std::uint64_t{127}, std::uint64_t{128},
                                        std::numeric_limits<std::uint64_t>::max()}) {
@@ -71,6 +71,110 @@ TEST(EncodeFrame, WithItsHeadIsTheEnvelopeThatProtobufWouldWrite) {
     proto::append_frame(whole, expected);
     EXPECT_EQ(bytes + body, expected) << sequence;
   }
+}
+
+TEST(EncodeFrame, BatchesAreTheEnvelopeThatProtobufWouldWrite) {
+  v1::Frame frame;
+  fill_frame(example_snapshot(), topic_bit(v1::HIPS), {}, 0, frame);
+  const std::string body = frame.SerializeAsString();
+  v1::Envelope whole;
+  std::vector<FrameHead> frames;
+  for (const std::uint64_t sequence : {std::uint64_t{127}, std::uint64_t{128}, std::uint64_t{129}}) {
+    v1::Frame& next = *whole.mutable_batch()->add_frame();
+    next = frame;
+    next.set_sequence(sequence);
+    next.set_subscription(3);
+    frames.push_back({sequence, 3, body.size()});
+  }
+  std::string expected;
+  proto::append_frame(whole, expected);
+  std::string bytes;
+  for (const std::string& head : batch_heads(frames)) {
+    bytes += head + body;
+  }
+  EXPECT_EQ(bytes, expected);
+}
+
+// fingers "a" with HIPs 0 and 1, "b" with HIP 2; objects "x" and "y"
+v1::SceneDescription example_names() {
+  v1::SceneDescription scene;
+  scene.add_object()->set_name("x");
+  scene.add_object()->set_name("y");
+  auto& a = *scene.add_finger();
+  a.set_name("a");
+  a.set_hips(2);
+  auto& b = *scene.add_finger();
+  b.set_name("b");
+  b.set_first_hip(2);
+  b.set_hips(1);
+  return scene;
+}
+
+// HIP 0 in free air of x, 1 pressed on y, 2 on the surface of x without force
+servo::Snapshot touching() {
+  servo::Snapshot snapshot;
+  snapshot.objects.resize(2);
+  snapshot.hips.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    snapshot.hips[i].position.x = static_cast<double>(i);
+  }
+  using engine::ConstraintState;
+  snapshot.contacts.push_back({0, 0, ConstraintState::kTet, false, {}, {}});
+  snapshot.contacts.push_back({1, 1, ConstraintState::kTet, false, {}, {0, 0, 1}});
+  snapshot.contacts.push_back({2, 0, ConstraintState::kSur, false, {}, {}});
+  return snapshot;
+}
+
+v1::HipsFrame hips_of(const Filter& filter) {
+  v1::Frame frame;
+  fill_frame(touching(), topic_bit(v1::HIPS), select(filter, example_names()), 0, frame);
+  EXPECT_EQ(frame.hips().position_size(), frame.hips().force_size());
+  return frame.hips();
+}
+
+using Indices = std::vector<std::uint32_t>;
+
+template <class Array>
+Indices list(const Array& array) {
+  return {array.begin(), array.end()};
+}
+
+TEST(EncodeFrame, TellsHipsOfChosenFingersByNumber) {
+  const v1::HipsFrame b = hips_of({.fingers = {"b"}, .objects = {}});
+  EXPECT_EQ(list(b.hip()), Indices{2});
+  ASSERT_EQ(b.position_size(), 3);
+  EXPECT_EQ(b.position(0), 2.0);
+  EXPECT_EQ(list(b.contact_hip()), Indices{2});
+  EXPECT_EQ(hips_of({}).hip_size(), 0);  // all need no numbers
+  EXPECT_EQ(hips_of({}).position_size(), 9);
+}
+
+TEST(EncodeFrame, TellsContactsWithChosenObjects) {
+  const v1::HipsFrame x = hips_of({.fingers = {}, .objects = {"x"}});
+  EXPECT_EQ(x.position_size(), 9);
+  EXPECT_EQ(list(x.contact_hip()), (Indices{0, 2}));
+}
+
+TEST(EncodeFrame, TellsOnlyHipsInContact) {
+  const v1::HipsFrame all = hips_of({.fingers = {}, .objects = {}, .only_in_contact = true});
+  EXPECT_EQ(list(all.hip()), (Indices{1, 2}));
+  EXPECT_EQ(list(all.contact_hip()), (Indices{1, 2}));
+  const v1::HipsFrame x = hips_of({.fingers = {}, .objects = {"x"}, .only_in_contact = true});
+  EXPECT_EQ(list(x.hip()), Indices{2});
+  const v1::HipsFrame none = hips_of({.fingers = {"a"}, .objects = {"x"}, .only_in_contact = true});
+  EXPECT_EQ(none.position_size(), 0);
+}
+
+TEST(EncodeFrame, StaysWithinASceneThatDoesNotFitTheSnapshot) {
+  const Selection selection = select({.fingers = {"b"}, .objects = {"y"}}, example_names());
+  servo::Snapshot snapshot = touching();
+  snapshot.objects.resize(5);
+  snapshot.hips.resize(9);
+  snapshot.contacts.push_back({77, 88, engine::ConstraintState::kSur, false, {}, {}});
+  v1::Frame frame;
+  fill_frame(snapshot, kTickTopics, selection, 0, frame);
+  EXPECT_EQ(list(frame.hips().hip()), Indices{2});
+  EXPECT_EQ(list(frame.objects().object()), Indices{1});
 }
 
 }  // namespace

@@ -103,6 +103,40 @@ TEST(Config, ListensToThisMachineOnly) {
   }
 }
 
+TEST(Config, ListensToOtherMachinesWithTlsOnly) {
+  const std::string tls = "tls { certificate: \"d.crt\" key: \"/k\" authority: \"ca.crt\" }";
+  const auto tcp = [](const std::string& rest) {
+    return "listen { tcp { address: \"0.0.0.0\" port: 7 " + rest + " } }";
+  };
+  const std::string alice = " allow { name: \"alice\" role: DRIVE }";
+  const auto listen = config_of(tcp(tls + alice)).message.listen(0).tcp();
+  EXPECT_EQ(listen.tls().certificate(), "/c/d.crt");
+  EXPECT_EQ(listen.tls().key(), "/k");
+  EXPECT_EQ(listen.tls().authority(), "/c/ca.crt");
+
+  EXPECT_EQ(error_in(tcp("")).field(), "listen[0].tcp.address");
+  EXPECT_EQ(error_in(tcp(alice)).field(), "listen[0].tcp.allow");
+  EXPECT_EQ(error_in(tcp(tls)).field(), "listen[0].tcp");
+  EXPECT_EQ(error_in(tcp(tls + " allow { role: DRIVE }")).field(), "listen[0].tcp.allow[0].name");
+  EXPECT_EQ(error_in(tcp(tls + " allow { name: \"alice\" }")).field(), "listen[0].tcp.allow[0].role");
+  EXPECT_EQ(error_in(tcp("tls { certificate: \"c\" authority: \"a\" }" + alice)).field(),
+            "listen[0].tcp.tls.key");
+}
+
+TEST(Config, HasLimitsForClientsAndADriver) {
+  const v1::DaemonConfig plain = config_of("").message;
+  EXPECT_EQ(plain.limits().clients(), 64U);
+  EXPECT_EQ(plain.limits().request_bytes(), 1048576U);
+  EXPECT_EQ(plain.limits().items(), 16384U);
+  EXPECT_EQ(plain.drive().on_loss(), v1::Drive::FAULT);
+  EXPECT_EQ(plain.drive().heartbeat(), 0.1);
+  EXPECT_EQ(config_of("capacity { hips: 20000 }").message.limits().items(), 20000U);
+  EXPECT_EQ(config_of("drive { on_loss: KEEP heartbeat: 2 }").message.drive().on_loss(), v1::Drive::KEEP);
+  EXPECT_EQ(error_in("drive { heartbeat: 0.001 }").field(), "drive.heartbeat");
+  EXPECT_EQ(error_in("limits { hello: 0.01 }").field(), "limits.hello");
+  EXPECT_EQ(error_in("limits { request_bytes: 100 }").field(), "limits.request_bytes");
+}
+
 TEST(Config, HoldsASocketPathThatTheSystemCanHold) {
   // sockaddr_un has 108 bytes, one of them for the end
   config_of("listen { unix { path: \"/" + std::string(106, 'x') + "\" } }");

@@ -231,6 +231,35 @@ TEST(ForceGuard, KeepsTheFirstFault) {
   EXPECT_EQ(guard.fault().device, kNoDevice);
 }
 
+TEST(ForceGuard, AGentleFaultBringsForceDownByTheSlewLimitAndStaysLatched) {
+  GuardLimits limits = no_limits();
+  limits.max_force_rate = 250.0;  // 0.25 N in a tick of 1 ms
+  ForceGuard guard(limits);
+  guard.arm_at_once();
+  for (int i = 0; i < 10; ++i) guard.guard(input_with({1.0, 0.0, 0.0}), kDt);
+  guard.latch_gently({.kind = FaultKind::kLostDriver, .tick = 7});
+  EXPECT_FALSE(guard.is_cut());
+  for (const double left : {0.75, 0.5, 0.25, 0.0, 0.0}) {
+    EXPECT_NEAR(guard.guard(input_with({1.0, 0.0, 0.0}), kDt).force.x, left, kRounding);
+  }
+  EXPECT_EQ(guard.fault().kind, FaultKind::kLostDriver);
+  EXPECT_FALSE(guard.arm());
+}
+
+TEST(ForceGuard, AFaultThatComesWhileForceGoesDownCutsIt) {
+  GuardLimits limits = no_limits();
+  limits.max_force_rate = 250.0;
+  ForceGuard guard(limits);
+  guard.arm_at_once();
+  for (int i = 0; i < 10; ++i) guard.guard(input_with({1.0, 0.0, 0.0}), kDt);
+  guard.latch_gently({.kind = FaultKind::kLostDriver, .tick = 7});
+  expect_zero(guard.guard(input_with({kNan, 0.0, 0.0}), kDt));
+  EXPECT_TRUE(guard.is_cut());
+  EXPECT_EQ(guard.fault().kind, FaultKind::kLostDriver);
+  guard.clear();
+  EXPECT_FALSE(guard.is_cut());
+}
+
 TEST(ForceGuard, ADeviceWithoutASampleGetsNothingAndRampsUpOnceItHasOne) {
   GuardLimits limits = no_limits();
   limits.arm_ramp = 0.5;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/support/expect_vector.h"
 #include "tests/support/servo_rig.h"
 
@@ -231,6 +233,62 @@ TEST_F(ServoCommands, AFaultOutlivesASwap) {
   rig.tick();
   EXPECT_EQ(rig.loop().fault().kind, safety::FaultKind::kOverSpeed);
   for (const Event& event : rig.events()) delete event.scene;
+}
+
+TEST_F(ServoCommands, ALostDriverBringsForceDownByTheSlewLimitAndLatchesAFaultOfThatName) {
+  ServoSettings settings{.limits = test::wide_limits(), .armed_from_start = true};
+  settings.limits.max_force_rate = 250.0;  // 0.25 N in a tick
+  ServoRig rig(settings);
+  press(rig);
+  rig.tick(10);
+  ASSERT_NEAR(force(rig), 1.0, kRounding);
+  rig.events();
+  rig.mailbox().commands.push(
+      {.kind = CommandKind::kLatchFault,
+       .fault = {.kind = safety::FaultKind::kLostDriver, .value = 0.12, .limit = 0.1}});
+  // 1 N at 0.25 N in a tick: none left after 4 ticks, and no step on the way
+  for (const double left : {0.75, 0.5, 0.25, 0.0}) {
+    rig.tick();
+    EXPECT_NEAR(force(rig), left, kRounding);
+  }
+  EXPECT_TRUE(rig.loop().is_at_rest());
+  const std::vector<Event> events = rig.events();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].kind, EventKind::kFaultLatched);
+  EXPECT_EQ(events[0].fault.kind, safety::FaultKind::kLostDriver);
+  EXPECT_STREQ(safety::name_of(events[0].fault.kind), "lost_driver");
+  EXPECT_EQ(events[0].fault.tick, 12u);  // press() ran ticks 0 and 1, and ten followed
+  EXPECT_EQ(events[1].kind, EventKind::kDone);
+
+  EXPECT_FALSE(rig.snapshot().armed);
+  EXPECT_EQ(ask(rig, CommandKind::kArm), EventKind::kFaultRefused);
+  EXPECT_EQ(ask(rig, CommandKind::kClearFault), EventKind::kDone);
+  EXPECT_EQ(ask(rig, CommandKind::kArm), EventKind::kDone);
+}
+
+TEST_F(ServoCommands, AFaultThatComesWhileForceGoesDownCutsAllDevicesAtOnce) {
+  ServoSettings settings{.limits = test::wide_limits(), .armed_from_start = true};
+  settings.limits.max_force_rate = 250.0;
+  ServoRig rig(settings);
+  press(rig);
+  rig.tick(10);
+  rig.mailbox().commands.push(
+      {.kind = CommandKind::kLatchFault, .fault = {.kind = safety::FaultKind::kLostDriver}});
+  rig.tick();
+  ASSERT_NEAR(force(rig), 0.75, kRounding);
+  rig.device(1).sample.velocity.x = std::numeric_limits<double>::quiet_NaN();
+  rig.tick();
+  EXPECT_EQ(rig.device(0).written.force, kNothing);
+  EXPECT_EQ(rig.loop().fault().kind, safety::FaultKind::kLostDriver);
+}
+
+TEST_F(ServoCommands, ALostDriverIsNoFaultWhileDisarmed) {
+  ServoRig rig(plain_);
+  rig.mailbox().commands.push(
+      {.kind = CommandKind::kLatchFault, .fault = {.kind = safety::FaultKind::kLostDriver}});
+  rig.tick();
+  EXPECT_EQ(answer(rig), EventKind::kNothingToDo);
+  EXPECT_EQ(rig.loop().fault().kind, safety::FaultKind::kNone);
 }
 
 TEST_F(ServoCommands, CommandsWaitWhileThereIsNoRoomForTheirAnswers) {

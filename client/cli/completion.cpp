@@ -1,0 +1,124 @@
+#include "client/cli/completion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace haptic::cli {
+namespace {
+
+constexpr const char* kBashHead = R"shell(# bash completion for hapticctl, made by: hapticctl completion bash
+_hapticctl() {
+  local word=${COMP_WORDS[COMP_CWORD]} verb= before= kind= list= item i
+  local -a socket=()
+  COMPREPLY=()
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    [[ $before == --socket ]] && socket=(--socket "${COMP_WORDS[i]}")
+    before=${COMP_WORDS[i]}
+    case "$verb/$before" in
+)shell";
+
+// names are compared and quoted here: compgen -W would run what stands in them
+constexpr const char* kBashTail = R"shell(
+  list=${list// /$'\n'}
+  case $kind in
+    FILE)
+      compopt -o filenames 2>/dev/null
+      mapfile -t COMPREPLY < <(compgen -f -- "$word")
+      return
+      ;;
+    OBJECT | FINGER | DEVICE | MATERIAL)
+      list+=$'\n'$("${COMP_WORDS[0]}" __names "$kind" "${socket[@]}" 2>/dev/null)
+      ;;
+  esac
+  while IFS= read -r item; do
+    [[ -n $item && $item == "$word"* ]] && COMPREPLY+=("$(printf %q "$item")")
+  done <<<"$list"
+}
+complete -F _hapticctl hapticctl
+)shell";
+
+void collect(const CLI::App& app, const std::string& path, std::vector<CompletedVerb>& verbs) {
+  const std::size_t mine = verbs.size();
+  verbs.push_back({path, app.get_description(), {}, {}, ""});
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional()) {
+      if (verbs[mine].value.empty()) {
+        verbs[mine].value = option->get_type_name();
+      }
+      continue;
+    }
+    CompletedOption& known = verbs[mine].options.emplace_back();
+    for (const std::string& name : option->get_snames()) {
+      known.names.push_back("-" + name);
+    }
+    for (const std::string& name : option->get_lnames()) {
+      known.names.push_back("--" + name);
+    }
+    known.help = option->get_description();
+    known.value = option->get_items_expected_max() > 0 ? option->get_type_name() : "";
+  }
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!verb->get_group().empty()) {
+      const std::string below = path.empty() ? verb->get_name() : path + " " + verb->get_name();
+      verbs[mine].verbs.push_back(below);
+      collect(*verb, below, verbs);
+    }
+  }
+}
+
+// words to choose from, separated by spaces; empty for kinds that are none
+std::string choices(const std::string& kind) {
+  std::string words = kind.find('|') == std::string::npos ? "" : kind;
+  std::replace(words.begin(), words.end(), '|', ' ');
+  return words;
+}
+
+}  // namespace
+
+std::vector<CompletedVerb> completed_verbs(const CLI::App& app) {
+  std::vector<CompletedVerb> verbs;
+  collect(app, "", verbs);
+  return verbs;
+}
+
+std::string last_word(const std::string& path) { return path.substr(path.rfind(' ') + 1); }
+
+bool has_names(const std::string& kind) {
+  return kind == "OBJECT" || kind == "FINGER" || kind == "DEVICE" || kind == "MATERIAL";
+}
+
+std::string bash_completion(const std::vector<CompletedVerb>& verbs) {
+  std::string text = kBashHead;
+  for (const CompletedVerb& verb : verbs) {
+    for (const std::string& below : verb.verbs) {
+      text += fmt::format("      '{}/{}') verb='{}' ;;\n", verb.path, last_word(below), below);
+    }
+  }
+  text += "    esac\n  done\n  case \"$verb/$before\" in\n";
+  for (const CompletedVerb& verb : verbs) {
+    for (const CompletedOption& option : verb.options) {
+      for (const std::string& name : option.value.empty() ? std::vector<std::string>{} : option.names) {
+        text += fmt::format("    '{}/{}') kind='{}' list='{}' ;;\n", verb.path, name,
+                            choices(option.value).empty() ? option.value : "", choices(option.value));
+      }
+    }
+  }
+  text += "    *)\n      case \"$verb/$word\" in\n";
+  for (const CompletedVerb& verb : verbs) {
+    std::string options;
+    for (const CompletedOption& option : verb.options) {
+      options += fmt::format("{}{}", options.empty() ? "" : " ", fmt::join(option.names, " "));
+    }
+    std::string words = choices(verb.value);
+    for (const std::string& below : verb.verbs) {
+      words += (words.empty() ? "" : " ") + last_word(below);
+    }
+    text += fmt::format("        '{}/-'*) list='{}' ;;\n", verb.path, options);
+    text += fmt::format("        '{}/'*) kind='{}' list='{}' ;;\n", verb.path,
+                        choices(verb.value).empty() ? verb.value : "", words);
+  }
+  return text + "      esac\n      ;;\n  esac" + kBashTail;
+}
+
+}  // namespace haptic::cli

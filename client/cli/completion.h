@@ -1,0 +1,39 @@
+#pragma once
+// Scripts with which shells complete hapticctl's arguments, made from its own parser, so that they know what
+// it knows. Names of objects and the like they ask of the running daemon, through the hidden verb __names.
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace haptic::cli {
+
+struct CompletedOption {
+  std::vector<std::string> names;  // with their dashes
+  std::string help;
+  std::string value;  // what follows it: a kind, see values_of(); empty: nothing
+};
+
+struct CompletedVerb {
+  std::string path;  // "object add"; empty: hapticctl itself
+  std::string help;
+  std::vector<std::string> verbs;  // the paths of those below
+  std::vector<CompletedOption> options;
+  std::string value;  // the kind of its first argument without a dash
+};
+
+/// All verbs that help shows, each before those below it.
+std::vector<CompletedVerb> completed_verbs(const CLI::App& app);
+
+/// The last word of a path.
+std::string last_word(const std::string& path);
+
+/// Whether __names knows the kind: OBJECT, FINGER, DEVICE, MATERIAL. The other kinds that can be completed
+/// are FILE, and words with | between them.
+bool has_names(const std::string& kind);
+
+std::string bash_completion(const std::vector<CompletedVerb>& verbs);
+std::string zsh_completion(const std::vector<CompletedVerb>& verbs);
+std::string fish_completion(const std::vector<CompletedVerb>& verbs);
+
+}  // namespace haptic::cli

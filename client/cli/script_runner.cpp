@@ -1,0 +1,155 @@
+#include "client/cli/script_runner.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "client/cli/screen.h"
+#include "client/lib/error.h"
+
+namespace haptic::cli {
+namespace {
+
+using std::chrono::milliseconds;
+
+template <typename... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <typename... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
+client::Clock::time_point in(double seconds) {
+  return client::Clock::now() +
+         std::chrono::duration_cast<client::Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+// what is left, in pieces after which a signal is looked for
+milliseconds piece_until(client::Clock::time_point deadline) {
+  const auto left = std::chrono::ceil<milliseconds>(deadline - client::Clock::now());
+  return std::clamp(left, milliseconds(0), milliseconds(100));
+}
+
+}  // namespace
+
+ScriptRunner::ScriptRunner(const Command& command, std::string name)
+    : command_(command), name_(std::move(name)) {}
+
+ExitCode ScriptRunner::run(const std::string& text, const Variables& defines) {
+  std::vector<std::pair<int, Step>> steps;
+  try {
+    for (const ScriptLine& line : read_script(text, defines)) {
+      steps.emplace_back(line.line, make_step(line));
+    }
+  } catch (const ScriptError& error) {
+    complain(error.line(), error.what());
+    return kUsage;
+  }
+  catch_stop_signals();
+  for (const auto& [line, step] : steps) {
+    ExitCode code = run_reporting(step, line);
+    if (stop_requested()) {
+      complain(line, "stopped by a signal");
+      return kFailed;
+    }
+    if (code != kDone) {
+      return code;
+    }
+  }
+  return kDone;
+}
+
+// the code of the line, kDone where it had nothing to do
+ExitCode ScriptRunner::run_reporting(const Step& step, int line) {
+  failure_.clear();
+  ExitCode code = kFailed;
+  try {
+    code = run_step(step);
+  } catch (const client::Error& error) {
+    code = exit_code(error);
+    failure_ = error.what();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+  }
+  if (code != kDone && !stop_requested()) {
+    complain(line, failure_.empty() ? fmt::format("exit code {}", static_cast<int>(code)) : failure_);
+  }
+  return code == kNothingToDo ? kDone : code;
+}
+
+ExitCode ScriptRunner::run_step(const Step& step) {
+  return std::visit(Overloaded{[this](const WaitStep& s) { return wait(s.seconds); },
+                               [this](const WaitUntilStep& s) { return wait_until(s); },
+                               [this](const ExpectStep& s) { return expect(s); },
+                               [](const EchoStep& s) {
+                                 fmt::print("{}\n", s.text);
+                                 std::fflush(stdout);
+                                 return kDone;
+                               },
+                               [this](const VerbStep& s) { return run_verb(s); }},
+                    step);
+}
+
+ExitCode ScriptRunner::wait(double seconds) {
+  const client::Clock::time_point deadline = in(seconds);
+  while (!stop_requested() && client::Clock::now() < deadline) {
+    if (*command_.connection) {
+      // events are taken, so that they do not heap up, and a daemon that goes away is noticed
+      (*command_.connection)->receive(piece_until(deadline));
+    } else {
+      ::poll(nullptr, 0, static_cast<int>(piece_until(deadline).count()));
+    }
+  }
+  return kDone;
+}
+
+ExitCode ScriptRunner::wait_until(const WaitUntilStep& step) {
+  const client::Clock::time_point deadline = in(step.seconds);
+  Lookout lookout(command_.connect(), topic_of(step.condition));
+  std::optional<double> last;
+  while (!stop_requested() && (!last || client::Clock::now() < deadline)) {
+    const std::optional<Look> look = lookout.next(piece_until(deadline));
+    if (look) {
+      last = measure(step.condition, *look);
+      if (holds(step.condition, *last)) {
+        return kDone;
+      }
+    } else if (client::Clock::now() >= deadline) {
+      break;
+    }
+  }
+  failure_ = fmt::format("{} did not come true within {} s; {}", step.condition.text, step.seconds,
+                         last ? fmt::format("it is {:.6g}", *last) : "no frames came");
+  return kFailed;
+}
+
+ExitCode ScriptRunner::expect(const ExpectStep& step) {
+  const Look look = look_once(command_.connect(), topic_of(step.condition));
+  const double measured = measure(step.condition, look);
+  if (holds(step.condition, measured)) {
+    return kDone;
+  }
+  failure_ = fmt::format("expected {}; it is {:.6g}", step.condition.text, measured);
+  return kFailed;
+}
+
+ExitCode ScriptRunner::run_verb(const VerbStep& step) {
+  Command verb;
+  verb.address = command_.address;
+  verb.json = command_.json;
+  verb.connection = command_.connection;
+  parse_verb(step.words, verb);
+  const ExitCode code = verb.action(verb);
+  std::fflush(stdout);
+  return code;
+}
+
+void ScriptRunner::complain(int line, const std::string& reason) const {
+  std::fflush(stdout);
+  fmt::print(stderr, "{}:{}: {}\n", name_, line, reason);
+}
+
+}  // namespace haptic::cli

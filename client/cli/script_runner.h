@@ -1,0 +1,34 @@
+#pragma once
+// Runs a script line by line over one connection, and stops at the first line that fails.
+
+#include <string>
+
+#include "client/cli/script_step.h"
+
+namespace haptic::cli {
+
+class ScriptRunner {
+ public:
+  /// `name` of the script, for errors; `command` tells where the daemon is and how verbs speak.
+  ScriptRunner(const Command& command, std::string name);
+
+  /// kUsage, before anything has run, if a line is wrong; else the exit code of the line that failed, told on
+  /// standard error with its place; else kDone. Having nothing to do is no failure. SIGINT and SIGTERM end it
+  /// with kFailed; the daemon stays as the lines so far have left it.
+  ExitCode run(const std::string& text, const Variables& defines);
+
+ private:
+  ExitCode run_step(const Step& step);
+  ExitCode wait(double seconds);
+  ExitCode wait_until(const WaitUntilStep& step);
+  ExitCode expect(const ExpectStep& step);
+  ExitCode run_verb(const VerbStep& step);
+  ExitCode run_reporting(const Step& step, int line);
+  void complain(int line, const std::string& reason) const;
+
+  const Command& command_;
+  std::string name_;
+  std::string failure_;  // why a wait or an expectation failed
+};
+
+}  // namespace haptic::cli

@@ -1,0 +1,72 @@
+#include "client/cli/script_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "client/cli/verbs.h"
+
+namespace haptic::cli {
+namespace {
+
+using Words = std::span<const std::string>;
+
+Step make_wait(Words words) {
+  if (words.size() == 1 && words[0] != "until") {
+    return WaitStep{parse_duration(words[0])};
+  }
+  // until CONDITION for DURATION
+  if (words.size() < 4 || words[0] != "until" || words[words.size() - 2] != "for") {
+    throw std::invalid_argument("wait is written: wait 2s, or wait until CONDITION for 2s");
+  }
+  return WaitUntilStep{parse_condition(words.subspan(1, words.size() - 3)), parse_duration(words.back())};
+}
+
+Step make_any(const std::vector<std::string>& words) {
+  const Words rest = Words(words).subspan(1);
+  if (words[0] == "wait") {
+    return make_wait(rest);
+  }
+  if (words[0] == "expect") {
+    return ExpectStep{parse_condition(rest)};
+  }
+  if (words[0] == "echo") {
+    return EchoStep{fmt::format("{}", fmt::join(rest, " "))};
+  }
+  Command unused;
+  parse_verb(words, unused);
+  return VerbStep{words};
+}
+
+}  // namespace
+
+Step make_step(const ScriptLine& line) {
+  try {
+    return make_any(line.words);
+  } catch (const std::invalid_argument& error) {
+    throw ScriptError(line.line, error.what());
+  }
+}
+
+void parse_verb(const std::vector<std::string>& words, Command& command) {
+  for (const char* other : {"run", "completion", "__names"}) {
+    if (words[0] == other) {
+      throw std::invalid_argument(words[0] + " is not for scripts");
+    }
+  }
+  const std::string address = command.address;
+  const std::unique_ptr<CLI::App> app = make_app(command);
+  // CLI11 takes the words from the end
+  std::vector<std::string> reversed(words.rbegin(), words.rend());
+  try {
+    app->parse(reversed);
+  } catch (const CLI::ParseError& error) {
+    throw std::invalid_argument(error.get_exit_code() == 0 ? "help is not for scripts" : error.what());
+  }
+  if (command.address != address) {
+    throw std::invalid_argument("a script talks to one daemon: --socket belongs before its name");
+  }
+}
+
+}  // namespace haptic::cli

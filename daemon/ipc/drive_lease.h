@@ -1,0 +1,61 @@
+#pragma once
+// One client at a time may drive. The holder of the lease proves by heartbeats that it is alive; when it is
+// not, or its connection ends, the servo thread is told what the config says: to let forces go down and latch
+// a fault, to disarm, or nothing. io thread.
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "haptic/v1/config.pb.h"
+#include "ipc/publisher.h"
+#include "ipc/servo_link.h"
+
+namespace haptic::ipc {
+
+struct DrivePolicy {
+  v1::Drive::OnLoss on_loss = v1::Drive::FAULT;
+  std::chrono::milliseconds longest_silence{100};
+};
+
+class DriveLease {
+ public:
+  DriveLease(const DrivePolicy& policy, ServoLink& servo) : policy_(policy), servo_(servo) {}
+
+  std::chrono::milliseconds longest_silence() const noexcept { return policy_.longest_silence; }
+
+  /// Why this client may not arm or take the lease now: who holds it. Nothing if it may.
+  std::optional<std::string> refusal(ClientId client) const;
+
+  /// Only without refusal(). The holder itself may take it again, to agree on another silence.
+  void acquire(ClientId client, const std::string& name, std::chrono::milliseconds silence,
+               SteadyClock::time_point now);
+  /// False if the client does not hold it; so for the next.
+  bool release(ClientId client);
+  bool beat(ClientId client, SteadyClock::time_point now);
+
+  /// The client's connection ends.
+  void forget(ClientId client, SteadyClock::time_point now);
+
+  /// Finds a holder that is silent. To be called every few milliseconds.
+  void poll(SteadyClock::time_point now);
+
+ private:
+  struct Holder {
+    ClientId client;
+    std::string name;
+    std::chrono::milliseconds silence;
+    SteadyClock::time_point last_sign;
+    bool was_late = false;  // in the poll before
+  };
+
+  void lose(const safety::Fault& fault, const std::string& how, SteadyClock::time_point now);
+  void tell_servo(SteadyClock::time_point now);
+
+  DrivePolicy policy_;
+  ServoLink& servo_;
+  std::optional<Holder> holder_;
+  std::optional<servo::Command> untold_;  // of a loss, until the servo thread's queue has room
+};
+
+}  // namespace haptic::ipc

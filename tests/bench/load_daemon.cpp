@@ -1,0 +1,67 @@
+#include "tests/bench/load_daemon.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "client/lib/connection.h"
+#include "client/lib/error.h"
+
+namespace haptic::bench {
+
+LoadDaemon::LoadDaemon(const std::string& program, const std::string& config)
+    : socket_(folder_.file("hapticd.sock")) {
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::execl(program.c_str(), program.c_str(), "run", "--config", config.c_str(), "--socket", socket_.c_str(),
+            nullptr);
+    ::_exit(127);
+  }
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    try {
+      stats(false);
+      return;
+    } catch (const client::Error&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  }
+  throw std::runtime_error(program + " does not answer");
+}
+
+LoadDaemon::~LoadDaemon() {
+  ::kill(process_, SIGTERM);
+  ::waitpid(process_, nullptr, 0);
+}
+
+v1::Stats LoadDaemon::stats(bool reset) const {
+  client::Options options;
+  options.address = socket_;
+  options.program = "load_bench";
+  client::Connection daemon(options);
+  v1::Request request;
+  request.mutable_get_stats()->set_reset(reset);
+  return daemon.call(request).stats();
+}
+
+double LoadDaemon::cpu_seconds() const {
+  std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  // after the name, which may hold anything: state is field 3, utime and stime are 14 and 15
+  std::istringstream fields(line.substr(line.rfind(')') + 1));
+  std::string skipped;
+  for (int field = 3; field < 14; ++field) {
+    fields >> skipped;
+  }
+  double user = 0.0;
+  double system = 0.0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+}  // namespace haptic::bench
