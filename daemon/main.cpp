@@ -8,8 +8,10 @@
 #include <functional>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "daemon/run.h"
+#include "ipc/tls.h"
 #include "load/check.h"
 #include "simulate/simulate.h"
 
@@ -43,6 +45,13 @@ void add_check(CLI::App& app, haptic::load::CheckOptions& options, Action& actio
   verb->add_option("--config", options.config, "the daemon's config");
   verb->add_option("--scene", options.scene, "a scene; left away: the one that the config names");
   verb->add_flag("--json", options.json, "one JSON object instead of text");
+  options.tls_problems = [](const haptic::v1::Listen::Tls& config) {
+    std::vector<haptic::load::TlsProblem> problems;
+    for (auto& [field, message] : haptic::ipc::find_problems(config)) {
+      problems.push_back({field, message});
+    }
+    return problems;
+  };
   verb->callback([&] { action = [&] { return haptic::load::check(options, std::cout, std::cerr); }; });
 }
 

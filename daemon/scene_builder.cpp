@@ -5,6 +5,7 @@
 
 #include "engine/carry_map.h"
 #include "load/error.h"
+#include "load/read_file.h"
 #include "load/scene_edit.h"
 #include "servo/prepare_scene.h"
 
@@ -50,8 +51,14 @@ SceneBuilder::SceneBuilder(v1::Capacity capacity, std::vector<std::string> devic
     : capacity_(std::move(capacity)), devices_(std::move(devices)) {}
 
 ipc::BuiltScene SceneBuilder::from_file(const std::string& file) const {
-  return finish(file.empty() ? std::make_shared<const load::LoadedScene>()
-                             : load::load_scene(file, capacity_));
+  if (file.empty()) return finish(std::make_shared<const load::LoadedScene>());
+  ipc::BuiltScene built = finish(load::load_scene(file, capacity_));
+  for (v1::Object& object : *built.description.mutable_scene()->mutable_object()) {
+    if (!object.shape().has_mesh()) continue;
+    std::string& path = *object.mutable_shape()->mutable_mesh()->mutable_path();
+    path = std::filesystem::absolute(load::relative_to(file, path)).lexically_normal().string();
+  }
+  return built;
 }
 
 ipc::BuiltScene SceneBuilder::from_request(const v1::LoadScene& request) const {

@@ -16,7 +16,8 @@ class SceneBuilder {
   /// `devices` are the names in the order of the device set.
   SceneBuilder(v1::Capacity capacity, std::vector<std::string> devices);
 
-  /// The scene of a file; an empty scene if `file` is empty. Throws load::LoadError.
+  /// The scene of a file; an empty scene if `file` is empty. Its description names mesh files by their whole
+  /// paths: whoever saves it elsewhere can load it again. Throws load::LoadError.
   ipc::BuiltScene from_file(const std::string& file) const;
 
   /// What a client asks for. Throws ipc::SceneError. Any thread.

@@ -61,6 +61,12 @@ std::string describe(const v1::RealTime& real_time) {
   return text + (real_time.memory_locked() ? ", memory locked" : ", memory not locked");
 }
 
+std::string describe(const v1::DriveHolder& holder) {
+  const std::string program = holder.program().empty() ? "" : ", " + holder.program();
+  return fmt::format("{}{}: a heartbeat within {} ms, the last one {:.0f} ms ago", holder.client(), program,
+                     holder.heartbeat_ms(), holder.silence() * 1e3);
+}
+
 std::string describe(v1::Event::Kind kind) {
   switch (kind) {
     case v1::Event::ARMED:

@@ -13,6 +13,8 @@ std::string describe(v1::FaultKind kind);
 std::string describe(const v1::Fault& fault);
 std::string describe(const v1::RealTime& real_time);
 std::string describe(v1::Event::Kind kind);
+/// "user ada (process 12), hapticctl: a heartbeat within 100 ms, the last one 21 ms ago"
+std::string describe(const v1::DriveHolder& holder);
 
 /// The four-letter states of the paper: Tet, Sur, Edg, Ver, Out.
 const char* name_of(v1::ConstraintState state);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "client/cli/usage.h"
 #include "client/cli/verbs.h"
 
 namespace haptic::cli {
@@ -18,7 +19,7 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) {
       return app->exit(error);  // --help, --version
     }
-    std::fprintf(stderr, "hapticctl: %s; see hapticctl --help\n", error.what());
+    std::fprintf(stderr, "hapticctl: %s; see hapticctl --help\n", in_words(error, *app).c_str());
     return kUsage;
   }
   try {

@@ -11,7 +11,7 @@ namespace {
 
 volatile std::sig_atomic_t stop = 0;
 
-void request_stop(int /*signal*/) { stop = 1; }
+void request_stop(int signal) { stop = signal; }
 
 void write_all(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
@@ -30,6 +30,7 @@ void catch_stop_signals() noexcept {
 }
 
 bool stop_requested() noexcept { return stop != 0; }
+int stop_signal() noexcept { return stop; }
 
 // alternate screen, no cursor; and back
 Screen::Screen() { write_all("\033[?1049h\033[?25l\033[2J"); }

@@ -12,6 +12,8 @@ bool is_terminal() noexcept;
 /// turns true. Without SA_RESTART.
 void catch_stop_signals() noexcept;
 bool stop_requested() noexcept;
+/// Which of the two it was; 0 before.
+int stop_signal() noexcept;
 
 class Screen {
  public:

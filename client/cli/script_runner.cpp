@@ -49,6 +49,12 @@ ExitCode ScriptRunner::run(const std::string& text, const Variables& defines) {
     return kUsage;
   }
   catch_stop_signals();
+  const ExitCode code = run_steps(steps);
+  release_lease();
+  return code;
+}
+
+ExitCode ScriptRunner::run_steps(const std::vector<std::pair<int, Step>>& steps) {
   for (const auto& [line, step] : steps) {
     ExitCode code = run_reporting(step, line);
     if (stop_requested()) {
@@ -142,9 +148,36 @@ ExitCode ScriptRunner::run_verb(const VerbStep& step) {
   verb.json = command_.json;
   verb.connection = command_.connection;
   parse_verb(step.words, verb);
+  take_lease(step.verb);
   const ExitCode code = verb.action(verb);
   std::fflush(stdout);
   return code;
+}
+
+void ScriptRunner::take_lease(const std::string& verb) {
+  const bool arms = verb == "arm";
+  if ((!arms && verb != "object move") || command_.connect().holds_drive()) {
+    return;
+  }
+  try {
+    command_.connect().acquire_drive();
+  } catch (const client::Unsupported&) {
+    return;  // a daemon that has no leases
+  } catch (const client::Refused&) {
+    if (arms) {
+      throw;
+    }
+  }
+}
+
+void ScriptRunner::release_lease() noexcept {
+  try {
+    if (*command_.connection) {
+      (*command_.connection)->release_drive();
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: the drive lease could not be released: %s\n", name_.c_str(), error.what());
+  }
 }
 
 void ScriptRunner::complain(int line, const std::string& reason) const {

@@ -2,6 +2,8 @@
 // Runs a script line by line over one connection, and stops at the first line that fails.
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/cli/script_step.h"
 
@@ -14,10 +16,15 @@ class ScriptRunner {
 
   /// kUsage, before anything has run, if a line is wrong; else the exit code of the line that failed, told on
   /// standard error with its place; else kDone. Having nothing to do is no failure. SIGINT and SIGTERM end it
-  /// with kFailed; the daemon stays as the lines so far have left it.
+  /// with kFailed; the daemon stays as the lines so far have left it. From the first line that arms or moves
+  /// something on the script holds the drive lease until it ends: if hapticctl is killed, forces go down. To
+  /// move something it goes on without the lease where it may not have it.
   ExitCode run(const std::string& text, const Variables& defines);
 
  private:
+  ExitCode run_steps(const std::vector<std::pair<int, Step>>& steps);
+  void take_lease(const std::string& verb);
+  void release_lease() noexcept;
   ExitCode run_step(const Step& step);
   ExitCode wait(double seconds);
   ExitCode wait_until(const WaitUntilStep& step);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "client/cli/usage.h"
 #include "client/cli/verbs.h"
 
 namespace haptic::cli {
@@ -35,8 +36,7 @@ Step make_any(const std::vector<std::string>& words) {
     return EchoStep{fmt::format("{}", fmt::join(rest, " "))};
   }
   Command unused;
-  parse_verb(words, unused);
-  return VerbStep{words};
+  return VerbStep{parse_verb(words, unused), words};
 }
 
 }  // namespace
@@ -49,8 +49,8 @@ Step make_step(const ScriptLine& line) {
   }
 }
 
-void parse_verb(const std::vector<std::string>& words, Command& command) {
-  for (const char* other : {"run", "completion", "__names"}) {
+std::string parse_verb(const std::vector<std::string>& words, Command& command) {
+  for (const char* other : {"run", "lease", "completion", "__names"}) {
     if (words[0] == other) {
       throw std::invalid_argument(words[0] + " is not for scripts");
     }
@@ -62,11 +62,18 @@ void parse_verb(const std::vector<std::string>& words, Command& command) {
   try {
     app->parse(reversed);
   } catch (const CLI::ParseError& error) {
-    throw std::invalid_argument(error.get_exit_code() == 0 ? "help is not for scripts" : error.what());
+    throw std::invalid_argument(error.get_exit_code() == 0 ? "help is not for scripts"
+                                                           : in_words(error, *app));
   }
   if (command.address != address) {
     throw std::invalid_argument("a script talks to one daemon: --socket belongs before its name");
   }
+  std::string verb;
+  for (const CLI::App* at = app.get(); !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    verb += (verb.empty() ? "" : " ") + at->get_name();
+  }
+  return verb;
 }
 
 }  // namespace haptic::cli

@@ -24,6 +24,7 @@ struct EchoStep {
   std::string text;
 };
 struct VerbStep {
+  std::string verb;  // "arm", "object move"
   std::vector<std::string> words;
 };
 
@@ -32,8 +33,9 @@ using Step = std::variant<WaitStep, WaitUntilStep, ExpectStep, EchoStep, VerbSte
 /// Throws ScriptError if the line is not right; nothing runs.
 Step make_step(const ScriptLine& line);
 
-/// Reads the words as hapticctl does, after which `command.action` does what they say. Throws
-/// std::invalid_argument in words if they are wrong, or are no verb for a script.
-void parse_verb(const std::vector<std::string>& words, Command& command);
+/// Reads the words as hapticctl does, after which `command.action` does what they say. Returns the verb
+/// without its options: "arm", "object move". Throws std::invalid_argument in words if they are wrong, or are
+/// no verb for a script.
+std::string parse_verb(const std::vector<std::string>& words, Command& command);
 
 }  // namespace haptic::cli

@@ -18,6 +18,7 @@ ExitCode show_status(Command& command) {
   }
   line("daemon", fmt::format("hapticd {}, up {}", status.version(), duration(status.uptime())));
   line("forces", status.armed() ? "armed" : "disarmed");
+  line("drive lease", status.has_drive_holder() ? describe(status.drive_holder()) : "free");
   for (const v1::Fault& fault : status.fault()) {
     line("fault", describe(fault) + "; hapticctl clear");
   }

@@ -16,6 +16,7 @@ void add_verbs(CLI::App& app, Command& command) {
   add_watch(app, command);
   add_stats(app, command);
   add_arm(app, command);
+  add_lease(app, command);
   add_pause(app, command);
   add_clear(app, command);
   add_certificates(app, command);

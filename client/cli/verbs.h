@@ -19,7 +19,8 @@ void add_finger(CLI::App& app, Command& command);    // add, remove, set
 void add_run(CLI::App& app, Command& command);
 void add_completion(CLI::App& app, Command& command);  // completion, and __names, which its scripts ask
 void add_arm(CLI::App& app, Command& command);         // arm, disarm
-void add_pause(CLI::App& app, Command& command);       // pause, resume, step
+void add_lease(CLI::App& app, Command& command);
+void add_pause(CLI::App& app, Command& command);  // pause, resume, step
 void add_clear(CLI::App& app, Command& command);
 void add_watch(CLI::App& app, Command& command);
 void add_stats(CLI::App& app, Command& command);

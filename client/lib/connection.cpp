@@ -1,5 +1,7 @@
 #include "client/lib/connection.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "client/lib/error.h"
@@ -8,6 +10,9 @@ namespace haptic::client {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{64} * 1024;
+
+constexpr std::uint64_t kHeartbeat = std::numeric_limits<std::uint64_t>::max();  // the id of all of them
+constexpr int kBeatsInSilence = 4;                                               // of these some may be late
 
 std::string seconds(std::chrono::milliseconds time) {
   const std::string whole = std::to_string(time.count() / 1000);
@@ -109,6 +114,48 @@ std::uint32_t Connection::subscribe(v1::Subscribe subscription) {
   return call(std::move(request)).subscribed().subscription();
 }
 
+std::chrono::milliseconds Connection::acquire_drive(std::chrono::milliseconds silence) {
+  v1::Request request;
+  request.mutable_acquire_drive()->set_heartbeat_ms(static_cast<std::uint32_t>(silence.count()));
+  const std::chrono::milliseconds agreed(call(std::move(request)).drive_lease().heartbeat_ms());
+  beat_every_ = std::max(agreed / kBeatsInSilence, std::chrono::milliseconds(1));
+  next_beat_ = Clock::now() + *beat_every_;
+  return agreed;
+}
+
+void Connection::release_drive() {
+  if (!beat_every_) {
+    return;
+  }
+  beat_every_.reset();
+  v1::Request request;
+  request.mutable_release_drive();
+  call(std::move(request));
+}
+
+void Connection::beat_if_due() {
+  if (!beat_every_ || Clock::now() < next_beat_) {
+    return;
+  }
+  next_beat_ = Clock::now() + *beat_every_;
+  v1::Envelope envelope;
+  envelope.mutable_request()->set_id(kHeartbeat);
+  envelope.mutable_request()->mutable_heartbeat();
+  send(envelope, Clock::now() + timeout_);
+}
+
+void Connection::take_beat(const v1::Response& response) {
+  // of one that came before the lease was released, or that the daemon was too busy for, nothing follows
+  if (!beat_every_ || response.error().code() != v1::Error::NOT_FOUND) {
+    return;
+  }
+  beat_every_.reset();
+  v1::Error error;
+  error.set_code(v1::Error::FAILED);
+  error.set_message("the drive lease is lost: the daemon heard no heartbeat in time");
+  throw_error(error);
+}
+
 void Connection::unsubscribe(std::uint32_t subscription) {
   v1::Request request;
   request.mutable_unsubscribe()->set_subscription(subscription);
@@ -120,6 +167,7 @@ void Connection::unsubscribe(std::uint32_t subscription) {
 
 std::optional<v1::Envelope> Connection::receive(std::chrono::milliseconds timeout) {
   const Clock::time_point deadline = Clock::now() + timeout;
+  beat_if_due();
   while (kept_.empty()) {
     std::optional<v1::Envelope> message = read(deadline, true);
     if (!message) {
@@ -165,6 +213,7 @@ StreamSocket::Outcome Connection::receive_some(std::size_t& received, Clock::tim
 // the next envelope of a kind this program knows; a goodbye is thrown
 std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool until_signal) {
   while (true) {
+    beat_if_due();
     std::optional<std::string_view> message;
     try {
       message = reader_.next();
@@ -182,10 +231,14 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
       if (envelope.body_case() == v1::Envelope::BODY_NOT_SET) {
         continue;  // from a newer daemon
       }
+      if (envelope.response().id() == kHeartbeat) {
+        take_beat(envelope.response());
+        continue;
+      }
       return envelope;
     }
     std::size_t received = 0;
-    switch (receive_some(received, deadline)) {
+    switch (receive_some(received, beat_every_ ? std::min(deadline, next_beat_) : deadline)) {
       case StreamSocket::Outcome::kDone:
         reader_.append(std::string_view(chunk_.data(), received));
         break;
@@ -195,7 +248,10 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
         }
         break;
       case StreamSocket::Outcome::kTimedOut:
-        return std::nullopt;
+        if (Clock::now() >= deadline) {
+          return std::nullopt;
+        }
+        break;  // a heartbeat is due
       case StreamSocket::Outcome::kClosed:
         throw Unreachable("the daemon at " + name_ + " closed the connection" +
                           (tls_ && !tls_->problem().empty() ? ": " + tls_->problem() : ""));
@@ -205,6 +261,7 @@ std::optional<v1::Envelope> Connection::read(Clock::time_point deadline, bool un
 
 // nothing can be sent any more, but why may already be waiting to be read
 void Connection::throw_gone() {
+  beat_every_.reset();
   const Clock::time_point deadline = Clock::now() + std::chrono::milliseconds(200);
   while (read(deadline, false)) {
   }

@@ -51,6 +51,15 @@ class Connection {
   /// Ends a subscription; what of it has arrived already is dropped, but a frame on its way may still come.
   void unsubscribe(std::uint32_t subscription);
 
+  /// Takes the drive lease; `silence` is the longest between two heartbeats, 0: as long as the config
+  /// permits. Returns what was agreed. From then on call() and receive() send the heartbeats while they wait,
+  /// so that no more than this time may pass between them; where the lease is lost all the same, they throw
+  /// Error. Throws Refused if another client holds it.
+  std::chrono::milliseconds acquire_drive(std::chrono::milliseconds silence = {});
+  /// Nothing if it is not held.
+  void release_drive();
+  bool holds_drive() const noexcept { return beat_every_.has_value(); }
+
   /// The time for the answer of each call from now on.
   void set_timeout(std::chrono::milliseconds timeout) noexcept { timeout_ = timeout; }
 
@@ -64,6 +73,8 @@ class Connection {
   StreamSocket::Outcome receive_some(std::size_t& received, Clock::time_point deadline);
   std::optional<v1::Envelope> read(Clock::time_point deadline, bool until_signal);
   void keep(v1::Envelope message);
+  void beat_if_due();
+  void take_beat(const v1::Response& response);
   [[noreturn]] void throw_gone();
 
   std::string name_;
@@ -74,7 +85,9 @@ class Connection {
   std::vector<char> chunk_;
   v1::Hello daemon_;
   std::uint64_t last_request_ = 0;
-  std::deque<v1::Envelope> kept_;  // arrived and not yet received
+  std::deque<v1::Envelope> kept_;                        // arrived and not yet received
+  std::optional<std::chrono::milliseconds> beat_every_;  // while it holds the drive lease
+  Clock::time_point next_beat_;
 };
 
 }  // namespace haptic::client

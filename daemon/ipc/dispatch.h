@@ -21,6 +21,7 @@ struct Caller {
   ClientId id = 0;
   v1::Role role = v1::ROLE_UNSPECIFIED;
   std::string name;                                // for others to read
+  std::string program;                             // that it calls itself, fit to be printed
   std::size_t subscriptions = 16;                  // that it can have
   FrameSink sink;                                  // for its subscriptions
   std::function<void(std::uint32_t)> drop_frames;  // of a subscription that has ended

@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 namespace haptic::ipc {
 
 std::optional<std::string> DriveLease::refusal(ClientId client) const {
@@ -9,14 +11,14 @@ std::optional<std::string> DriveLease::refusal(ClientId client) const {
     return "the drive lease was just lost, and forces are still to go down";
   }
   if (holder_ && holder_->client != client) {
-    return holder_->name + " holds the drive lease";
+    return holder_->driver.name + " holds the drive lease";
   }
   return std::nullopt;
 }
 
-void DriveLease::acquire(ClientId client, const std::string& name, std::chrono::milliseconds silence,
+void DriveLease::acquire(ClientId client, Driver driver, std::chrono::milliseconds silence,
                          SteadyClock::time_point now) {
-  holder_ = Holder{client, name, silence, now};
+  holder_ = Holder{client, std::move(driver), silence, now};
 }
 
 bool DriveLease::release(ClientId client) {
@@ -60,7 +62,7 @@ void DriveLease::poll(SteadyClock::time_point now) {
 }
 
 void DriveLease::lose(const safety::Fault& fault, const std::string& how, SteadyClock::time_point now) {
-  spdlog::warn("{} has lost the drive lease: {}", holder_->name, how);
+  spdlog::warn("{} has lost the drive lease: {}", holder_->driver.name, how);
   holder_.reset();
   servo::Command command;
   switch (policy_.on_loss) {

@@ -18,17 +18,33 @@ struct DrivePolicy {
   std::chrono::milliseconds longest_silence{100};
 };
 
+/// Who a client is, for others to read.
+struct Driver {
+  std::string name;     // that the daemon knows it by
+  std::string program;  // that it calls itself
+};
+
 class DriveLease {
  public:
+  struct Holder {
+    ClientId client;
+    Driver driver;
+    std::chrono::milliseconds silence;  // the longest, as agreed
+    SteadyClock::time_point last_sign;
+    bool was_late = false;  // in the poll before
+  };
+
   DriveLease(const DrivePolicy& policy, ServoLink& servo) : policy_(policy), servo_(servo) {}
 
   std::chrono::milliseconds longest_silence() const noexcept { return policy_.longest_silence; }
+
+  const std::optional<Holder>& holder() const noexcept { return holder_; }
 
   /// Why this client may not arm or take the lease now: who holds it. Nothing if it may.
   std::optional<std::string> refusal(ClientId client) const;
 
   /// Only without refusal(). The holder itself may take it again, to agree on another silence.
-  void acquire(ClientId client, const std::string& name, std::chrono::milliseconds silence,
+  void acquire(ClientId client, Driver driver, std::chrono::milliseconds silence,
                SteadyClock::time_point now);
   /// False if the client does not hold it; so for the next.
   bool release(ClientId client);
@@ -41,14 +57,6 @@ class DriveLease {
   void poll(SteadyClock::time_point now);
 
  private:
-  struct Holder {
-    ClientId client;
-    std::string name;
-    std::chrono::milliseconds silence;
-    SteadyClock::time_point last_sign;
-    bool was_late = false;  // in the poll before
-  };
-
   void lose(const safety::Fault& fault, const std::string& how, SteadyClock::time_point now);
   void tell_servo(SteadyClock::time_point now);
 

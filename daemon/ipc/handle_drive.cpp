@@ -31,7 +31,7 @@ void handle_acquire_drive(Desk& desk, const Caller& caller, const v1::Request& r
     reply.fail(error);
     return;
   }
-  desk.lease.acquire(caller.id, caller.name, silence, SteadyClock::now());
+  desk.lease.acquire(caller.id, {caller.name, caller.program}, silence, SteadyClock::now());
   v1::Response response;
   response.mutable_drive_lease()->set_heartbeat_ms(static_cast<std::uint32_t>(silence.count()));
   reply.send(std::move(response));

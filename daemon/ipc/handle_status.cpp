@@ -20,6 +20,16 @@ void add_faults(const Desk& desk, v1::Status& status) {
   }
 }
 
+void add_driver(const Desk& desk, SteadyClock::time_point now, v1::Status& status) {
+  if (const auto& holder = desk.lease.holder()) {
+    v1::DriveHolder& told = *status.mutable_drive_holder();
+    told.set_client(holder->driver.name);
+    told.set_program(holder->driver.program);
+    told.set_heartbeat_ms(static_cast<std::uint32_t>(holder->silence.count()));
+    told.set_silence(std::chrono::duration<double>(now - holder->last_sign).count());
+  }
+}
+
 }  // namespace
 
 void handle_get_status(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
@@ -31,10 +41,12 @@ void handle_get_status(Desk& desk, const Caller& /*caller*/, const v1::Request& 
   status.set_version(desk.services.version);
   status.set_tick(latest.tick);
   status.set_rate_hz(desk.services.rate_hz);
-  status.set_uptime(std::chrono::duration<double>(SteadyClock::now() - desk.started).count());
+  const SteadyClock::time_point now = SteadyClock::now();
+  status.set_uptime(std::chrono::duration<double>(now - desk.started).count());
   status.set_armed(latest.armed);
   status.set_paused(latest.paused);
   add_faults(desk, status);
+  add_driver(desk, now, status);
   status.set_scene(scene.scene().name());
   status.set_scene_revision(scene.revision());
   status.set_objects(static_cast<std::uint32_t>(scene.object_size()));

@@ -15,6 +15,16 @@ namespace {
 // one write: enough to be efficient, little enough that control does not wait long behind it
 constexpr std::size_t kBatchBytes = std::size_t{64} * 1024;
 
+// what a client says about itself, of which others are told: short, and nothing that a terminal would obey
+std::string printable(const std::string& text) {
+  constexpr std::size_t kLongest = 64;
+  std::string out;
+  for (const char c : text.substr(0, kLongest)) {
+    out += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return out;
+}
+
 std::string version_text(std::uint32_t major, std::uint32_t minor) {
   return std::to_string(major) + "." + std::to_string(minor);
 }
@@ -133,6 +143,7 @@ void Session::take_hello(const v1::Envelope& envelope) {
                            "; install matching versions"));
     return;
   }
+  caller_.program = printable(theirs.program());
   timer_.cancel();
   reader_.set_limit(limits_.request_bytes);
   state_ = State::kServing;

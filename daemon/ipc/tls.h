@@ -19,6 +19,16 @@ struct EncryptedPeer {
   std::vector<std::string> names;  // common names of the certificate's subject, and its DNS names
 };
 
+/// What is wrong with a file that the config names.
+struct TlsFileProblem {
+  std::string field;    // "certificate", "key" or "authority"
+  std::string message;  // with the file's name
+};
+
+/// All that is wrong with the files: one that cannot be opened or is no such PEM, a certificate that is not
+/// valid today, a key that is not the certificate's. Empty: they can be used.
+std::vector<TlsFileProblem> find_problems(const v1::Listen::Tls& config);
+
 class TlsContext {
  public:
   /// Called once: with the peer, or with none and why.

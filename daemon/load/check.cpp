@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <ostream>
+#include <utility>
 
 #include "load/error.h"
 #include "load/ranges.h"
@@ -38,6 +39,23 @@ Report make_report(const CheckOptions& options) {
       load_scene(scene, report.config ? report.config->message.capacity() : default_capacity());
   report.scene = report_scene(*loaded, report.config ? &*report.config : nullptr);
   return report;
+}
+
+// each at its place in the config
+std::vector<LoadError> tls_errors(const Report& report, const CheckOptions& options) {
+  std::vector<LoadError> errors;
+  if (!report.config || !options.tls_problems) return errors;
+  const auto& listen = report.config->message.listen();
+  for (int i = 0; i < listen.size(); ++i) {
+    if (!listen[i].tcp().has_tls()) continue;
+    for (const TlsProblem& problem : options.tls_problems(listen[i].tcp().tls())) {
+      const std::string field = item("listen", i) + ".tcp.tls." + problem.field;
+      Place place = report.config->source.find(field);
+      place.field = field;
+      errors.emplace_back(std::move(place), problem.message);
+    }
+  }
+  return errors;
 }
 
 std::string driver_of(const v1::Device& device) { return device.has_simulated() ? "simulated" : "playback"; }
@@ -234,24 +252,29 @@ int check(const CheckOptions& options, std::ostream& out, std::ostream& err) {
     err << "hapticd check: name a config, a scene or both\n";
     return kUsage;
   }
+  std::vector<LoadError> errors;
   try {
     const Report report = make_report(options);
-    if (options.json) {
+    errors = tls_errors(report, options);
+    if (errors.empty() && options.json) {
       print_json(report, out);
-      return kGood;
+    } else if (errors.empty()) {
+      if (report.config) print(*report.config, out);
+      if (report.scene) print(*report.scene, out);
     }
-    if (report.config) print(*report.config, out);
-    if (report.scene) print(*report.scene, out);
-    return kGood;
   } catch (const LoadError& error) {
-    err << "hapticd check: " << error.what() << "\n";
-    if (options.json) {
-      Struct json;
-      (*json.mutable_fields())["error"] = json_of(error);
-      print_json(json, out);
-    }
-    return kBad;
+    errors.push_back(error);
   }
+  if (errors.empty()) return kGood;
+  for (const LoadError& error : errors) err << "hapticd check: " << error.what() << "\n";
+  if (options.json) {
+    Struct json;
+    (*json.mutable_fields())["error"] = json_of(errors.front());
+    (*json.mutable_fields())["errors"] =
+        list_of(errors, [](const LoadError& e) { return json_of(e).struct_value(); });
+    print_json(json, out);
+  }
+  return kBad;
 }
 
 }  // namespace haptic::load

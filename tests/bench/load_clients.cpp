@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "ipc/session_limits.h"
 #include "proto/protocol.h"
 #include "tests/support/raw_client.h"
 
 namespace haptic::bench {
 namespace {
-
-constexpr int kOpenRequests = 32;  // what the daemon takes of one client
 
 std::uint64_t monotonic_ns() {
   timespec now{};
@@ -132,16 +131,25 @@ void Nuisance::reconnect(std::uint64_t times) {
 
 void Nuisance::flood() {
   thread_ = std::jthread([this](const std::stop_token& stop) {
+    const ipc::SessionLimits limits;
     test::RawClient client(socket_);
     client.say_hello();
-    for (int i = 0; i < kOpenRequests; ++i) {
-      client.request([](v1::Request& request) { request.mutable_disarm(); });
-    }
-    while (!stop.stop_requested()) {
-      const auto message = client.receive();
+    const auto start = client::Clock::now();
+    double sent = 0.0;
+    std::size_t open = 0;
+    while (!stop.stop_requested() && !is_cut_off_) {
+      const double seconds = std::chrono::duration<double>(client::Clock::now() - start).count();
+      while (open < limits.open_requests && sent < seconds * limits.requests_per_second) {
+        // goes all the way to the servo thread, which has nothing to do; to disarm would be free of limits
+        client.request([](v1::Request& request) { request.mutable_resume(); });
+        ++open;
+        ++sent;
+      }
+      const auto message = client.receive(std::chrono::milliseconds(1));
+      is_cut_off_ = client.is_closed();
       if (message && message->has_response()) {
-        ++deeds_;
-        client.request([](v1::Request& request) { request.mutable_disarm(); });
+        --open;
+        deeds_ += message->response().error().code() == v1::Error::BUSY ? 0U : 1U;
       }
     }
   });
@@ -151,6 +159,9 @@ std::uint64_t Nuisance::stop() {
   if (thread_.joinable()) {
     thread_.request_stop();
     thread_.join();
+  }
+  if (is_cut_off_) {
+    throw std::runtime_error("the daemon has cut off the flood");
   }
   return deeds_;
 }

@@ -51,14 +51,16 @@ class Nuisance {
 
   /// Connects, says hello, waits for the answer and closes, at most so often.
   void reconnect(std::uint64_t times);
-  /// Sends commands, with as many unanswered as the daemon takes of one client.
+  /// Sends commands at the rate that the daemon takes of one client, with at most as many unanswered.
   void flood();
-  /// Returns how many reconnects there were, or answers.
+  /// Returns how many reconnects there were, or commands that the daemon took. Throws std::runtime_error if
+  /// it has cut the flood off, so that nothing was measured.
   std::uint64_t stop();
 
  private:
   std::string socket_;
   std::atomic<std::uint64_t> deeds_ = 0;
+  std::atomic<bool> is_cut_off_ = false;
   std::jthread thread_;
 };
 

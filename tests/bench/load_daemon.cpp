@@ -1,9 +1,11 @@
 #include "tests/bench/load_daemon.h"
 
+#include <google/protobuf/text_format.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -11,14 +13,31 @@
 
 #include "client/lib/connection.h"
 #include "client/lib/error.h"
+#include "load/config_file.h"
 
 namespace haptic::bench {
+namespace {
+
+constexpr std::uint32_t kCrowd = 512;  // clients, all of one user
+
+// the config with room for a crowd; in another folder, so that its paths must be whole
+std::string with_room(const std::string& config) {
+  v1::DaemonConfig message = load::load_config(std::filesystem::absolute(config)).message;
+  message.mutable_limits()->set_clients(kCrowd);
+  message.mutable_limits()->set_clients_per_user(kCrowd);
+  std::string text;
+  google::protobuf::TextFormat::PrintToString(message, &text);
+  return text;
+}
+
+}  // namespace
 
 LoadDaemon::LoadDaemon(const std::string& program, const std::string& config)
     : socket_(folder_.file("hapticd.sock")) {
+  const std::string file = folder_.write("load.txtpb", with_room(config));
   process_ = ::fork();
   if (process_ == 0) {
-    ::execl(program.c_str(), program.c_str(), "run", "--config", config.c_str(), "--socket", socket_.c_str(),
+    ::execl(program.c_str(), program.c_str(), "run", "--config", file.c_str(), "--socket", socket_.c_str(),
             nullptr);
     ::_exit(127);
   }

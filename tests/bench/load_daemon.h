@@ -12,7 +12,8 @@ namespace haptic::bench {
 
 class LoadDaemon {
  public:
-  /// Starts it and waits until it answers. Throws std::runtime_error.
+  /// Starts it with the config, but with room for hundreds of clients, and waits until it answers. Throws
+  /// std::runtime_error.
   LoadDaemon(const std::string& program, const std::string& config);
   LoadDaemon(const LoadDaemon&) = delete;
   LoadDaemon& operator=(const LoadDaemon&) = delete;

@@ -8,54 +8,31 @@
 #include <memory>
 #include <string_view>
 
-#include "ipc/dispatch.h"
 #include "proto/framing.h"
 #include "proto/protocol.h"
+#include "tests/fuzz/office.h"
 #include "tests/fuzz/schema_mutator.h"
 
 namespace {
 
 using namespace haptic;
 
-class Office {
- public:
-  void ask(const v1::Request& request, v1::Role role) {
-    const auto answers = std::make_shared<int>(0);
-    const ipc::Caller caller{.id = 1, .role = role, .sink = {}, .drop_frames = [](std::uint32_t) {}};
-    ipc::dispatch(desk_, caller, request, ipc::Reply(request.id(), [answers](v1::Response&& response) {
-                    static_cast<void>(response.SerializeAsString());
-                    if (++*answers > 1) {
-                      std::abort();
-                    }
-                  }));
-    servo::Command command;
-    while (mailbox_.commands.pop(command)) {
-      if (role == v1::OBSERVE) {
-        std::abort();
-      }
-      mailbox_.events.push({.command = command.kind, .request = command.request});
-    }
-    servo_.poll({});
+void ask(fuzz::Office& office, const v1::Request& request, v1::Role role) {
+  const auto answers = std::make_shared<int>(0);
+  ipc::Caller caller;
+  caller.id = 1;
+  caller.role = role;
+  caller.drop_frames = [](std::uint32_t) {};
+  ipc::dispatch(office.desk(), caller, request, ipc::Reply(request.id(), [answers](v1::Response&& response) {
+                  static_cast<void>(response.SerializeAsString());
+                  if (++*answers > 1) {
+                    std::abort();
+                  }
+                }));
+  if (office.obey() > 0 && role == v1::OBSERVE) {
+    std::abort();
   }
-
- private:
-  static ipc::BuiltScene refuse(const v1::LoadScene& /*request*/) {
-    throw ipc::SceneError(ipc::make_error(v1::Error::FAILED, "no scene is built here"));
-  }
-
-  servo::Mailbox mailbox_{servo::Capacity{1, 1, 1, 1, 1}};
-  ipc::Services services_{.mailbox = mailbox_,
-                          .version = "1",
-                          .rate_hz = 1000.0,
-                          .devices = {},
-                          .real_time = {},
-                          .scene = {},
-                          .build_scene = refuse};
-  ipc::ServoLink servo_{mailbox_, std::chrono::seconds(1), [](const servo::Event&) {}};
-  ipc::SceneStore scenes_{services_, servo_};
-  ipc::Publisher publisher_;
-  ipc::Desk desk_{services_, servo_, scenes_, publisher_, {}, [] { return std::size_t{1}; }};
-};
+}
 
 }  // namespace
 
@@ -63,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) {
     return 0;
   }
-  const auto office = std::make_unique<Office>();
+  const auto office = std::make_unique<fuzz::Office>();
   const v1::Role role = data[0] % 2 == 0 ? v1::OBSERVE : v1::ADMIN;
   proto::FrameReader reader(proto::kRequestLimit);
   reader.append(std::string_view(reinterpret_cast<const char*>(data) + 1, size - 1));
@@ -72,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       v1::Envelope envelope;
       if (envelope.ParseFromArray(message->data(), static_cast<int>(message->size())) &&
           envelope.has_request()) {
-        office->ask(envelope.request(), role);
+        ask(*office, envelope.request(), role);
       }
     }
   } catch (const proto::FramingError&) {

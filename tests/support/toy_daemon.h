@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -40,6 +41,12 @@ class ToyDaemon {
 
   std::string address() const { return folder_.file("s"); }
   int connections() const noexcept { return connections_; }
+  int leases() const noexcept { return leases_; }
+  int releases() const noexcept { return releases_; }
+  int heartbeats() const noexcept { return heartbeats_; }
+
+  /// For the clients to come: how the drive lease is refused.
+  void refuse_lease(v1::Error::Code code) { lease_refusal_ = code; }
 
  private:
   // one client after the other
@@ -120,10 +127,30 @@ class ToyDaemon {
         armed_ = true;
         response.mutable_done();
         break;
+      case v1::Request::kAcquireDrive:
+        acquire(response);
+        break;
+      case v1::Request::kReleaseDrive:
+        ++releases_;
+        response.mutable_done();
+        break;
+      case v1::Request::kHeartbeat:
+        ++heartbeats_;
+        response.mutable_done();
+        break;
       default:
         response.mutable_done();
     }
     return envelope;
+  }
+
+  void acquire(v1::Response& response) {
+    if (lease_refusal_) {
+      fail(response, *lease_refusal_, "", "no lease for you");
+    } else {
+      ++leases_;
+      response.mutable_drive_lease()->set_heartbeat_ms(100);
+    }
   }
 
   void edit(const v1::SceneEdit& edit, v1::Response& response) {
@@ -170,6 +197,10 @@ class ToyDaemon {
   TemporaryFolder folder_;
   int socket_ = -1;
   std::atomic<int> connections_ = 0;
+  std::atomic<int> leases_ = 0;
+  std::atomic<int> releases_ = 0;
+  std::atomic<int> heartbeats_ = 0;
+  std::optional<v1::Error::Code> lease_refusal_;  // set while no client is there
   std::uint32_t subscription_ = 0;
   std::uint64_t tick_ = 0;
   std::uint64_t revision_ = 1;

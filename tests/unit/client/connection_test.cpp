@@ -9,12 +9,15 @@
 #include <thread>
 
 #include "client/lib/error.h"
+#include "tests/support/scripted_daemon.h"
 #include "tests/support/test_daemon.h"
 
 namespace haptic::client {
 namespace {
 
 using std::chrono::milliseconds;
+using test::framed;
+using test::ScriptedDaemon;
 
 Options at(const std::string& address) {
   Options options;
@@ -39,57 +42,6 @@ v1::Request get_status() {
   return request;
 }
 
-// a daemon of few words: to its one client it sends what it is told to, whatever the client says
-class ScriptedDaemon {
- public:
-  explicit ScriptedDaemon(std::string bytes) {
-    sockaddr_un name{};
-    name.sun_family = AF_UNIX;
-    path().copy(name.sun_path, sizeof(name.sun_path) - 1);
-    socket_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
-    EXPECT_EQ(::listen(socket_, 1), 0);
-    thread_ = std::thread([this, bytes = std::move(bytes)] {
-      const int client = ::accept(socket_, nullptr, nullptr);
-      ::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      char ignored[1000];
-      while (::recv(client, ignored, sizeof(ignored), 0) > 0) {
-      }
-      ::close(client);
-    });
-  }
-  ScriptedDaemon(const ScriptedDaemon&) = delete;
-  ScriptedDaemon& operator=(const ScriptedDaemon&) = delete;
-  ~ScriptedDaemon() {
-    thread_.join();
-    ::close(socket_);
-  }
-
-  std::string path() const { return folder_.file("s"); }
-
- private:
-  test::TemporaryFolder folder_;
-  int socket_ = -1;
-  std::thread thread_;
-};
-
-std::string framed(const std::function<void(v1::Envelope&)>& fill) {
-  v1::Envelope envelope;
-  fill(envelope);
-  std::string bytes;
-  proto::append_frame(envelope, bytes);
-  return bytes;
-}
-
-std::string hello(std::uint32_t major) {
-  return framed([major](v1::Envelope& envelope) {
-    envelope.mutable_hello()->set_major(major);
-    envelope.mutable_hello()->set_minor(4);
-    envelope.mutable_hello()->set_program("hapticd");
-    envelope.mutable_hello()->set_version("3.0");
-  });
-}
-
 TEST(Connection, SaysWhatToDoWhenThereIsNoDaemon) {
   EXPECT_EQ(message_of<Unreachable>([] { const Connection daemon(at("/nowhere/hapticd.sock")); }),
             "cannot reach the daemon at /nowhere/hapticd.sock: there is no socket; is hapticd running?");
@@ -109,7 +61,7 @@ TEST(Connection, SaysWhatToDoWhenADaemonHasDied) {
 }
 
 TEST(Connection, RefusesADaemonOfAnotherMajorInWords) {
-  ScriptedDaemon daemon(hello(2));
+  ScriptedDaemon daemon(test::hello(2));
   EXPECT_EQ(message_of<ProtocolMismatch>([&] { const Connection connection(at(daemon.path())); }),
             "this program speaks protocol 1.0, the daemon (hapticd 3.0) 2.4; install matching versions");
 }
@@ -123,7 +75,7 @@ TEST(Connection, IsToldByTheDaemonThatItsOwnMajorIsRefused) {
 }
 
 TEST(Connection, AcceptsANewerMinor) {
-  ScriptedDaemon daemon(hello(1));
+  ScriptedDaemon daemon(test::hello(1));
   const Connection connection(at(daemon.path()));
   EXPECT_EQ(connection.daemon().minor(), 4U);
 }
@@ -144,7 +96,7 @@ TEST(Connection, GivesUpOnASilentPeer) {
 }
 
 TEST(Connection, GivesUpOnACallThatIsNotAnswered) {
-  ScriptedDaemon daemon(hello(1));
+  ScriptedDaemon daemon(test::hello(1));
   Options options = at(daemon.path());
   options.timeout = milliseconds(100);
   Connection connection(options);
@@ -154,7 +106,7 @@ TEST(Connection, GivesUpOnACallThatIsNotAnswered) {
 
 TEST(Connection, KeepsWhatArrivesDuringACallForLater) {
   // event, then the answer to request 1, as one stream
-  ScriptedDaemon daemon(hello(1) +
+  ScriptedDaemon daemon(test::hello(1) +
                         framed([](v1::Envelope& envelope) { envelope.mutable_event()->set_tick(5); }) +
                         framed([](v1::Envelope& envelope) {
                           envelope.mutable_response()->set_id(1);
@@ -168,7 +120,7 @@ TEST(Connection, KeepsWhatArrivesDuringACallForLater) {
 }
 
 TEST(Connection, IgnoresTheAnswerToACallThatItGaveUp) {
-  ScriptedDaemon daemon(hello(1) +
+  ScriptedDaemon daemon(test::hello(1) +
                         framed([](v1::Envelope& envelope) { envelope.mutable_response()->set_id(77); }) +
                         framed([](v1::Envelope& envelope) {
                           envelope.mutable_response()->set_id(1);
@@ -179,7 +131,7 @@ TEST(Connection, IgnoresTheAnswerToACallThatItGaveUp) {
 }
 
 TEST(Connection, ThrowsWhyItWasCutOff) {
-  ScriptedDaemon daemon(hello(1) + framed([](v1::Envelope& envelope) {
+  ScriptedDaemon daemon(test::hello(1) + framed([](v1::Envelope& envelope) {
                           v1::Error& error = *envelope.mutable_goodbye()->mutable_error();
                           error.set_code(v1::Error::FAILED);
                           error.set_message("you read too slowly");

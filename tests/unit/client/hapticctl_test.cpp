@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "haptic/v1/control.pb.h"
+#include "tests/support/scripted_daemon.h"
 #include "tests/support/test_daemon.h"
 
 namespace haptic::cli {
@@ -81,6 +82,30 @@ TEST_F(Hapticctl, ExitsWithFiveWhenTheDaemonIsUnreachable) {
             "running?\n");
 }
 
+TEST_F(Hapticctl, ExitsWithSixWhenTheDaemonSpeaksAnotherMajorAndTellsBoth) {
+  // a daemon says hello before it refuses one, so that the client can tell of both in its own words
+  const test::ScriptedDaemon daemon(
+      test::hello(2) + test::framed([](v1::Envelope& envelope) {
+        envelope.mutable_goodbye()->mutable_error()->set_code(v1::Error::MISMATCH);
+        envelope.mutable_goodbye()->mutable_error()->set_message("in the daemon's words");
+      }));
+  const Finished result = run("status --socket " + daemon.path());
+  EXPECT_EQ(result.code, 6);
+  EXPECT_EQ(result.output,
+            "hapticctl: this program speaks protocol 1.0, the daemon (hapticd 3.0) 2.4; install matching "
+            "versions\n");
+}
+
+TEST_F(Hapticctl, ExitsWithSixWhenADaemonOfAnotherMajorOnlySaysGoodbye) {
+  const test::ScriptedDaemon daemon(test::framed([](v1::Envelope& envelope) {
+    envelope.mutable_goodbye()->mutable_error()->set_code(v1::Error::MISMATCH);
+    envelope.mutable_goodbye()->mutable_error()->set_message("hapticd 3.0 speaks 2.4, hapticctl 1.0");
+  }));
+  const Finished result = run("status --socket " + daemon.path());
+  EXPECT_EQ(result.code, 6);
+  EXPECT_EQ(result.output, "hapticctl: hapticd 3.0 speaks 2.4, hapticctl 1.0\n");
+}
+
 TEST_F(Hapticctl, MakesCertificatesWithWhichItIsLetIn) {
   const test::TemporaryFolder folder;
   const std::string lab = folder.file("lab");
@@ -118,6 +143,20 @@ TEST_F(Hapticctl, ExitsWithSixtyFourWhenItIsMisused) {
     EXPECT_EQ(result.code, 64) << arguments;
     EXPECT_TRUE(contains(result.output, "hapticctl: ")) << result.output;
   }
+}
+
+TEST_F(Hapticctl, NamesAVerbThatIsNotThereAndThoseNearToIt) {
+  const Finished near = run("stauts --json");
+  EXPECT_EQ(near.code, 64);
+  EXPECT_EQ(near.output,
+            "hapticctl: there is no verb \"stauts\"; did you mean status or stats?; see hapticctl --help\n");
+  const Finished far = run("NONSENSE");
+  EXPECT_EQ(far.code, 64);
+  EXPECT_EQ(far.output, "hapticctl: there is no verb \"NONSENSE\"; see hapticctl --help\n");
+  const Finished nested = run("object mvoe box");
+  EXPECT_EQ(nested.code, 64);
+  EXPECT_EQ(nested.output,
+            "hapticctl: there is no verb \"object mvoe\"; did you mean move?; see hapticctl --help\n");
 }
 
 TEST_F(Hapticctl, HelpsAndTellsItsVersion) {

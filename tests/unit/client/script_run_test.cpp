@@ -69,6 +69,40 @@ TEST_F(ScriptRun, GoesOnWhereThereIsNothingToDo) {
   EXPECT_EQ(output(done), "armed: devices may push now\ntest.script:2: it is armed already\non\n");
 }
 
+TEST_F(ScriptRun, HoldsTheLeaseFromTheFirstLineThatArmsUntilItsEnd) {
+  EXPECT_EQ(run("echo only\nexpect object box.y > 0\n").code, 0);
+  EXPECT_EQ(daemon_.leases(), 0);
+  const Finished done = run("arm\nwait 500ms\narm\n");
+  EXPECT_EQ(done.code, 0) << done.output;
+  EXPECT_EQ(daemon_.leases(), 1);
+  EXPECT_EQ(daemon_.releases(), 1);
+  EXPECT_GE(daemon_.heartbeats(), 5);  // of 20 that are due in half a second with 25 ms between them
+}
+
+TEST_F(ScriptRun, GivesTheLeaseBackWhenALineFails) {
+  EXPECT_EQ(run("arm\nexpect object box.y > 1\n").code, 1);
+  EXPECT_EQ(daemon_.releases(), 1);
+}
+
+TEST_F(ScriptRun, ArmsOnlyIfItMayHaveTheLeaseButMovesWithoutIt) {
+  daemon_.refuse_lease(v1::Error::REFUSED);
+  const Finished refused = run("echo a\narm\n");
+  EXPECT_EQ(refused.code, 4);
+  EXPECT_EQ(output(refused), "a\ntest.script:2: no lease for you\n");
+  EXPECT_EQ(run("object move box --at 0 0.2 0\n").code, 0);
+}
+
+TEST_F(ScriptRun, ArmsWithoutALeaseWhereTheDaemonHasNone) {
+  daemon_.refuse_lease(v1::Error::UNSUPPORTED);
+  EXPECT_EQ(run("arm\n").code, 0);
+}
+
+TEST_F(ScriptRun, TakesTheLeaseToMoveIfItIsFree) {
+  EXPECT_EQ(run("object move box --at 0 0.2 0\n").code, 0);
+  EXPECT_EQ(daemon_.leases(), 1);
+  EXPECT_EQ(daemon_.releases(), 1);
+}
+
 TEST_F(ScriptRun, FailsWhenAnExpectationDoes) {
   EXPECT_EQ(run("expect object box.y == 0.05 within 1e-6\n").code, 0);
   const Finished failed = run("\nexpect object box.y > 0.1\n");

@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 
 class Lease : public testing::Test {
  protected:
-  void take(ClientId client) { lease_.acquire(client, "user ada", milliseconds(100), now_); }
+  void take(ClientId client) { lease_.acquire(client, {"user ada", "pilot"}, milliseconds(100), now_); }
 
   // two polls, as the io thread would make them: the first one only suspects
   void pass(milliseconds time) {
@@ -92,14 +92,14 @@ TEST_F(Lease, IsNotLostOnceItIsReleased) {
 
 TEST_F(Lease, DisarmsOrKeepsForcesIfTheConfigSaysSo) {
   DriveLease disarming({.on_loss = v1::Drive::DISARM}, servo_);
-  disarming.acquire(1, "ada", milliseconds(100), now_);
+  disarming.acquire(1, {"ada", "pilot"}, milliseconds(100), now_);
   disarming.forget(1, now_);
   const auto told = commands();
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].kind, servo::CommandKind::kDisarm);
 
   DriveLease keeping({.on_loss = v1::Drive::KEEP}, servo_);
-  keeping.acquire(1, "ada", milliseconds(100), now_);
+  keeping.acquire(1, {"ada", "pilot"}, milliseconds(100), now_);
   keeping.forget(1, now_);
   EXPECT_TRUE(commands().empty());
   EXPECT_FALSE(keeping.refusal(2));

@@ -236,6 +236,58 @@ TEST(Drive, AHolderThatFallsSilentLosesItAndIsTold) {
   EXPECT_EQ(error_of<client::NotFound>(driver, beat), "you do not hold the drive lease");
 }
 
+TEST(Drive, StatusTellsWhoHoldsIt) {
+  TestDaemon daemon(patient_drive());
+  client::Options options = at(daemon);
+  options.program = "pilot\033[2J";  // nothing that a terminal would obey reaches others
+  Connection driver(options);
+  Connection other(at(daemon));
+  EXPECT_FALSE(ask(other, get_status).status().has_drive_holder());
+  EXPECT_EQ(driver.acquire_drive(std::chrono::milliseconds(5000)).count(), 5000);
+  const v1::Status status = ask(other, get_status).status();
+  const std::string process = "(process " + std::to_string(::getpid()) + ")";
+  EXPECT_NE(status.drive_holder().client().find(process), std::string::npos);
+  EXPECT_EQ(status.drive_holder().program(), "pilot?[2J");
+  EXPECT_EQ(status.drive_holder().heartbeat_ms(), 5000U);
+  EXPECT_GE(status.drive_holder().silence(), 0.0);
+  EXPECT_LT(status.drive_holder().silence(), 5.0);
+  driver.release_drive();
+  EXPECT_FALSE(ask(other, get_status).status().has_drive_holder());
+}
+
+TEST(Drive, LastsWhileItsHolderWaitsForSomethingElse) {
+  ServerSettings settings;
+  settings.drive.longest_silence = std::chrono::milliseconds(500);
+  TestDaemon daemon(settings);
+  Connection driver(at(daemon));
+  driver.acquire_drive();
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
+  while (std::chrono::steady_clock::now() < until) {
+    driver.receive(std::chrono::milliseconds(700));  // longer than the silence
+  }
+  EXPECT_TRUE(driver.holds_drive());
+  EXPECT_TRUE(ask(driver, get_status).status().has_drive_holder());
+}
+
+TEST(Drive, IsToldAsLostToItsHolderWhereverItWaits) {
+  ServerSettings settings;
+  settings.drive.longest_silence = std::chrono::milliseconds(50);
+  TestDaemon daemon(settings);
+  Connection driver(at(daemon));
+  driver.acquire_drive();
+  Connection witness(at(daemon));
+  while (ask(witness, get_status).status().has_drive_holder()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  try {
+    driver.receive(std::chrono::seconds(5));
+    FAIL() << "not told";
+  } catch (const client::Error& error) {
+    EXPECT_STREQ(error.what(), "the drive lease is lost: the daemon heard no heartbeat in time");
+  }
+  EXPECT_FALSE(driver.holds_drive());
+}
+
 TEST(Drive, AsksForAHeartbeatThatTheConfigPermits) {
   TestDaemon daemon(patient_drive());
   Connection client(at(daemon));

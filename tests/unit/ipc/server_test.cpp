@@ -247,7 +247,7 @@ TEST(Server, TellsAStalledClientExactlyWhichFramesItLost) {
 TEST(Server, CutsOffAClientWhoseControlOverflows) {
   ServerSettings settings;
   settings.session.outbox.control_bytes = 20'000;
-  settings.session.goodbye = std::chrono::milliseconds(50);
+  settings.session.requests_per_second = 10'000'000;  // not what it is cut off for
   TestDaemon daemon(settings);
   RawClient deaf(daemon.address());
   deaf.say_hello();
@@ -268,6 +268,14 @@ TEST(Server, CutsOffAClientWhoseControlOverflows) {
     cut_off = clients() == 1;
   }
   EXPECT_TRUE(cut_off);
+  std::optional<v1::Envelope> last;
+  while (auto message = deaf.receive()) {
+    last = std::move(message);
+  }
+  ASSERT_TRUE(last && last->has_goodbye());
+  EXPECT_EQ(last->goodbye().error().code(), v1::Error::FAILED);
+  EXPECT_EQ(last->goodbye().error().message(),
+            "you read too slowly: the answers and events for you overflow");
 }
 
 TEST(Server, TakesNoMoreClientsThanItsLimit) {

@@ -75,6 +75,33 @@ TEST(Check, OfABadFileFailsAndNamesThePlace) {
   EXPECT_EQ(error.at("field").string_value(), "gravity.x");
 }
 
+TEST(Check, TellsOfEachFileOfTlsWhatIsWrongWithItAndWhere) {
+  const TemporaryFolder folder;
+  const std::string config =
+      folder
+          .write(
+              "c.txtpb",
+              "listen { tcp { address: \"127.0.0.1\" port: 7411 allow { name: \"a\" role: OBSERVE }\n"
+              "  tls {\n    certificate: \"s.crt\"\n    key: \"s.key\"\n    authority: \"a.crt\"\n  } } }\n")
+          .string();
+  CheckOptions options{config, "", false};
+  EXPECT_EQ(run(options).code, 0);
+  options.tls_problems = [&](const v1::Listen::Tls& tls) {
+    EXPECT_EQ(tls.key(), (folder.path() / "s.key").string());  // whole, so that it can be opened
+    return std::vector<TlsProblem>{{"key", "it is bent"}, {"authority", "nobody knows it"}};
+  };
+  const Result text = run(options);
+  EXPECT_EQ(text.code, 1);
+  EXPECT_EQ(text.out, "");
+  EXPECT_EQ(text.err, "hapticd check: " + config + ":4:5: listen[0].tcp.tls.key: it is bent\n" +
+                          "hapticd check: " + config +
+                          ":5:5: listen[0].tcp.tls.authority: nobody knows it\n");
+  options.json = true;
+  const auto message = json_of(run(options).out);
+  EXPECT_EQ(message.fields().at("error").struct_value().fields().at("line").number_value(), 4.0);
+  EXPECT_EQ(message.fields().at("errors").list_value().values_size(), 2);
+}
+
 TEST(Check, OfNothingIsAnErrorOfUsage) { EXPECT_EQ(run({"", "", false}).code, 64); }
 
 TEST(Check, WarnsOfWhatIsHardlyMeant) {

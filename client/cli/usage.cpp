@@ -1,0 +1,84 @@
+#include "client/cli/usage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace haptic::cli {
+namespace {
+
+constexpr std::size_t kMost = 3;
+
+// how many letters are inserted, left away, replaced or exchanged with their neighbour, at the least
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::vector<std::size_t> next(b.size() + 1, i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = row[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      next[j] = std::min({replaced, row[j] + 1, next[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        next[j] = std::min(next[j], before[j - 2] + 1);
+      }
+    }
+    before = std::exchange(row, std::move(next));
+  }
+  return row.back();
+}
+
+std::vector<std::string> verbs_of(const CLI::App& app) {
+  const std::vector<const CLI::App*> verbs =
+      app.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
+  std::vector<std::string> names;
+  names.reserve(verbs.size());
+  for (const CLI::App* verb : verbs) {
+    names.push_back(verb->get_name());
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> near_to(const std::string& word, const std::vector<std::string>& names) {
+  std::vector<std::pair<std::size_t, std::string>> found;
+  for (const std::string& name : names) {
+    const bool is_begun = !word.empty() && name.rfind(word, 0) == 0;
+    const std::size_t away = is_begun ? 0 : distance(word, name);
+    const std::size_t permitted = std::max<std::size_t>(1, std::min(word.size(), name.size()) / 3);
+    if (away <= permitted) {
+      found.emplace_back(away, name);
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  found.resize(std::min(found.size(), kMost));
+  std::vector<std::string> nearest;
+  nearest.reserve(found.size());
+  for (auto& [away, name] : found) {
+    nearest.push_back(std::move(name));
+  }
+  return nearest;
+}
+
+std::string in_words(const CLI::ParseError& error, const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) {
+    at = at->get_subcommands().front();
+  }
+  const std::vector<std::string> unread = at->remaining();
+  const auto word = std::find_if(unread.begin(), unread.end(),
+                                 [](const std::string& each) { return each.rfind('-', 0) != 0; });
+  if (at->get_require_subcommand_min() == 0 || word == unread.end()) {
+    return error.what();
+  }
+  const std::string whole = at == &app ? *word : at->get_name() + " " + *word;
+  const std::vector<std::string> near = near_to(*word, verbs_of(*at));
+  return fmt::format("there is no verb \"{}\"{}", whole,
+                     near.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(near, " or ")));
+}
+
+}  // namespace haptic::cli

@@ -1,0 +1,52 @@
+#pragma once
+// All that requests are dispatched to, with nobody behind it but a servo thread's end that does what it is
+// told.
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+
+#include "ipc/dispatch.h"
+
+namespace haptic::fuzz {
+
+class Office {
+ public:
+  ipc::Desk& desk() noexcept { return desk_; }
+
+  /// Obeys what waits for the servo thread; returns how many commands there were.
+  std::size_t obey() {
+    std::size_t commands = 0;
+    servo::Command command;
+    while (mailbox_.commands.pop(command)) {
+      ++commands;
+      mailbox_.events.push({.command = command.kind, .request = command.request});
+    }
+    servo_.poll({});
+    return commands;
+  }
+
+ private:
+  template <class... Request>
+  static ipc::BuiltScene refuse(const Request&... /*request*/) {
+    throw ipc::SceneError(ipc::make_error(v1::Error::FAILED, "no scene is built here"));
+  }
+
+  servo::Mailbox mailbox_{servo::Capacity{1, 1, 1, 1, 1}};
+  ipc::Services services_{.mailbox = mailbox_,
+                          .version = "1",
+                          .rate_hz = 1000.0,
+                          .devices = {},
+                          .real_time = {},
+                          .scene = {},
+                          .running = std::make_shared<const engine::Scene>(),
+                          .build_scene = refuse<v1::LoadScene>,
+                          .edit_scene = refuse<v1::EditScene, ipc::RunningScene>};
+  ipc::ServoLink servo_{mailbox_, std::chrono::seconds(1), [](const servo::Event&) {}};
+  ipc::SceneStore scenes_{services_, servo_};
+  ipc::Publisher publisher_;
+  ipc::DriveLease lease_{ipc::DrivePolicy(), servo_};
+  ipc::Desk desk_{services_, servo_, scenes_, publisher_, {}, [] { return std::size_t{1}; }, lease_};
+};
+
+}  // namespace haptic::fuzz
