@@ -33,8 +33,8 @@ const CLI::Validator& finite() {
 }
 
 CLI::Option* add_numbers(CLI::App& verb, const std::string& name, int count, const std::string& type,
-                         const std::string& help, std::function<void(const Numbers&)> take) {
-  return verb.add_option_function<Numbers>(name, std::move(take), help)
+                         const std::string& help, const std::function<void(const Numbers&)>& take) {
+  return verb.add_option_function<Numbers>(name, take, help)
       ->expected(count)
       ->check(finite())
       ->type_name(type);
