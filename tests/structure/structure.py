@@ -62,6 +62,10 @@ ROOMS = {
         ours=("client/lib", "proto", "schema"),
         libraries=("google/protobuf/", "boost/", "fmt/", "CLI/", "posix"),
     ),
+    "client/bridge": Room(
+        ours=("client/lib", "proto", "schema"),
+        libraries=("google/protobuf/", "CLI/", "nats/", "posix"),
+    ),
     "tests": Room(ours=("daemon", "drivers", "proto", "schema", "client"), libraries=("",)),
 }
 
