@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Makes the manual pages from their prose, the programs' own help, and the comments of the schema.
 
-usage: generate.py --hapticd FILE --hapticctl FILE [--check]
+usage: generate.py --hapticd FILE --hapticctl FILE --haptic-bridge FILE [--check]
 
 man/source/PAGE holds the prose of each page in troff. A line of it that begins with @ is replaced:
   @verbs PROGRAM           each verb of hapticd or hapticctl with its options, from --help
+  @options PROGRAM         each option of a program without verbs, from --help
   @messages FILE NAME...   the fields of these messages of proto/haptic/v1/FILE, with those inside, from its comments
   @header NAME SECTION     the title line, with the program's version
 
@@ -63,6 +64,23 @@ def is_common(program, option):
     return option.startswith(common)
 
 
+def option_lines(name, meaning):
+    """One option, of the name and the text that CLI11's help has for it."""
+    name = name.replace(" REQUIRED", "").replace(" ...", "")
+    name = re.sub(r" (Needs|Excludes):.*| x \d+.*| \(Env:.*", "", name)
+    meaning = re.sub(r" ?(Needs|Excludes):( --?[\w-]+)+", "", " " + meaning).strip()
+    return [".TP", "\\fB" + troff(name).replace(" ", "\\fR ", 1) + ("" if " " in name else "\\fR"), troff(meaning)]
+
+
+def options_page(program):
+    return [
+        line
+        for name, meaning in entries(run(program, "--help"), "Options")
+        if not name.startswith(("-h,--help", "--version"))
+        for line in option_lines(name, meaning)
+    ]
+
+
 def verb_page(program, path, text, common_footer):
     """One verb, and those below it."""
     help_text = run(program, *path, "--help")
@@ -78,10 +96,7 @@ def verb_page(program, path, text, common_footer):
         if options:
             lines.append(".RS")
         for name, meaning in options:
-            name = name.replace(" REQUIRED", "").replace(" ...", "")
-            name = re.sub(r" (Needs|Excludes):.*| x \d+.*", "", name)
-            meaning = re.sub(r" ?(Needs|Excludes):( --?[\w-]+)+", "", " " + meaning).strip()
-            lines += [".TP", "\\fB" + troff(name).replace(" ", "\\fR ", 1) + ("" if " " in name else "\\fR"), troff(meaning)]
+            lines += option_lines(name, meaning)
         if options:
             lines.append(".RE")
     for name, meaning in below:
@@ -198,6 +213,8 @@ def page(source, programs):
             lines.append(f'.TH {arguments[0]} {arguments[1]} "" "hapticd {version}" "hapticd manual"')
         elif word == "verbs":
             lines += verbs(programs[arguments[0]])
+        elif word == "options":
+            lines += options_page(programs[arguments[0]])
         elif word == "messages":
             lines += messages(arguments[0], arguments[1:])
         else:
@@ -209,9 +226,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--hapticd", required=True)
     parser.add_argument("--hapticctl", required=True)
+    parser.add_argument("--haptic-bridge", required=True)
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    programs = {"hapticd": options.hapticd, "hapticctl": options.hapticctl}
+    programs = {"hapticd": options.hapticd, "hapticctl": options.hapticctl, "haptic-bridge": options.haptic_bridge}
     stale = []
     for source in sorted((MAN / "source").iterdir()):
         target, text = MAN / source.name, page(source, programs)

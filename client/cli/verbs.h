@@ -25,6 +25,7 @@ void add_clear(CLI::App& app, Command& command);
 void add_watch(CLI::App& app, Command& command);
 void add_stats(CLI::App& app, Command& command);
 void add_certificates(CLI::App& app, Command& command);
+void add_plot(CLI::App& app, Command& command);
 
 /// All of them, in the order of the help.
 void add_verbs(CLI::App& app, Command& command);

@@ -51,6 +51,7 @@ Figures run(const Phase& phase, LoadDaemon& daemon, double seconds) {
   Swarm swarm(daemon.socket(), phase.clients, phase.decimation, phase.stalled);
   Nuisance nuisance(daemon.socket());
   daemon.stats(true);
+  const std::uint64_t missed_before = daemon.missed_ticks();
   const double cpu = daemon.cpu_seconds();
   const auto start = client::Clock::now();
   if (phase.nuisance == Phase::Nuisance::kReconnect) {
@@ -63,6 +64,8 @@ Figures run(const Phase& phase, LoadDaemon& daemon, double seconds) {
   figures.deeds = nuisance.stop();
   figures.cpu_seconds = daemon.cpu_seconds() - cpu;
   figures.stats = daemon.stats(false);
+  // a reset is done some ticks after it is answered
+  figures.stats.set_missed_ticks(daemon.missed_ticks() - missed_before);
   figures.arrivals = swarm.arrivals();
   return figures;
 }

@@ -57,18 +57,28 @@ LoadDaemon::~LoadDaemon() {
   ::waitpid(process_, nullptr, 0);
 }
 
-v1::Stats LoadDaemon::stats(bool reset) const {
+v1::Response LoadDaemon::call(const v1::Request& request) const {
   client::Options options;
   options.address = socket_;
   options.program = "load_bench";
   client::Connection daemon(options);
-  v1::Request request;
-  request.mutable_get_stats()->set_reset(reset);
-  return daemon.call(request).stats();
+  return daemon.call(request);
 }
 
-double LoadDaemon::cpu_seconds() const {
-  std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
+v1::Stats LoadDaemon::stats(bool reset) const {
+  v1::Request request;
+  request.mutable_get_stats()->set_reset(reset);
+  return call(request).stats();
+}
+
+std::uint64_t LoadDaemon::missed_ticks() const {
+  v1::Request request;
+  request.mutable_get_status();
+  return call(request).status().missed_ticks();
+}
+
+double cpu_seconds_of(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string line;
   std::getline(file, line);
   // after the name, which may hold anything: state is field 3, utime and stime are 14 and 15

@@ -10,6 +10,9 @@
 
 namespace haptic::bench {
 
+/// User and system time of all threads of a process since it started, s.
+double cpu_seconds_of(pid_t process);
+
 class LoadDaemon {
  public:
   /// Starts it with the config, but with room for hundreds of clients, and waits until it answers. Throws
@@ -22,10 +25,13 @@ class LoadDaemon {
   const std::string& socket() const noexcept { return socket_; }
   /// `reset`: its counters start again.
   v1::Stats stats(bool reset) const;
-  /// Of all its threads since it started.
-  double cpu_seconds() const;
+  /// Since it started, whatever was reset.
+  std::uint64_t missed_ticks() const;
+  double cpu_seconds() const { return cpu_seconds_of(process_); }
 
  private:
+  v1::Response call(const v1::Request& request) const;
+
   test::TemporaryFolder folder_;
   std::string socket_;
   pid_t process_ = -1;

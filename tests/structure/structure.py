@@ -58,9 +58,14 @@ ROOMS = {
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
+    "client/plot": Room(ours=("client/lib", "schema"), libraries=("google/protobuf/", "fmt/", "posix")),
     "client/cli": Room(
-        ours=("client/lib", "proto", "schema"),
+        ours=("client/lib", "client/plot", "proto", "schema"),
         libraries=("google/protobuf/", "boost/", "fmt/", "CLI/", "posix"),
+    ),
+    "client/bridge": Room(
+        ours=("client/lib", "proto", "schema"),
+        libraries=("google/protobuf/", "CLI/", "nats/", "posix"),
     ),
     "tests": Room(ours=("daemon", "drivers", "proto", "schema", "client"), libraries=("",)),
 }
