@@ -43,7 +43,18 @@ ROOMS = {
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/simulate": Room(
-        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "schema"),
+        ours=(
+            "daemon/setup",
+            "daemon/servo",
+            "daemon/rt",
+            "daemon/load",
+            "daemon/engine",
+            "daemon/safety",
+            "daemon/ipc/convert",
+            "daemon/ipc/encode",
+            "proto/recording",
+            "schema",
+        ),
         libraries=("glm/", "fmt/"),
     ),
     "daemon": Room(
