@@ -16,6 +16,8 @@ void add_verbs(CLI::App& app, Command& command) {
   add_watch(app, command);
   add_stats(app, command);
   add_plot(app, command);
+  add_record(app, command);
+  add_recording(app, command);
   add_arm(app, command);
   add_lease(app, command);
   add_pause(app, command);

@@ -43,7 +43,18 @@ ROOMS = {
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/simulate": Room(
-        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "schema"),
+        ours=(
+            "daemon/setup",
+            "daemon/servo",
+            "daemon/rt",
+            "daemon/load",
+            "daemon/engine",
+            "daemon/safety",
+            "daemon/ipc/convert",
+            "daemon/ipc/encode",
+            "proto/recording",
+            "schema",
+        ),
         libraries=("glm/", "fmt/"),
     ),
     "daemon": Room(
@@ -57,6 +68,8 @@ ROOMS = {
     ),
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
+    "proto/foxglove": Room(ours=("schema",)),
+    "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
     "client/plot": Room(ours=("client/lib", "schema"), libraries=("google/protobuf/", "fmt/", "posix")),
     "client/cli": Room(
@@ -125,7 +138,7 @@ def room_of(path):
 
 def find(root, including, name):
     """The file that #include "name" means, relative to the root; "schema" for generated ones; None if there is none."""
-    if name.startswith("haptic/v1/") and name.endswith(".pb.h"):
+    if name.startswith(("haptic/v1/", "foxglove/")) and name.endswith(".pb.h"):
         return "schema" if (root / "proto" / (name[: -len(".pb.h")] + ".proto")).is_file() else None
     beside = str(Path(including).parent / name)
     for candidate in (beside, name, "daemon/" + name):
