@@ -3,7 +3,8 @@
 
 For each coefficient, in random order, the scene's materials get that friction, the scene begins anew, and while the
 device goes its way the ratio of tangential to normal force is measured in every tick in which the finger slips. By
-Coulomb's law it is the coefficient of kinetic friction. To be run with friction.txtpb, whose device strokes a fixed block:
+Coulomb's law it is the coefficient of kinetic friction. To be run with friction.txtpb, whose device
+strokes a fixed block:
 
     hapticd run --config client/python/examples/friction.txtpb --socket /tmp/hapticd.sock
     friction_experiment.py --socket /tmp/hapticd.sock --csv trials.csv
