@@ -43,7 +43,8 @@ ROOMS = {
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/simulate": Room(
-        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "schema"),
+        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "proto/csv",
+              "schema"),
         libraries=("glm/", "fmt/"),
     ),
     "daemon": Room(
@@ -57,11 +58,16 @@ ROOMS = {
     ),
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
+    "proto/csv": Room(),
     "proto/foxglove": Room(ours=("schema",)),
     "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
+    "client/export": Room(
+        ours=("proto/csv", "proto/recording", "schema"),
+        libraries=("google/protobuf/", "fmt/", "hdf5.h", "posix"),
+    ),
     "client/cli": Room(
-        ours=("client/lib", "proto", "schema"),
+        ours=("client/lib", "client/export", "proto", "schema"),
         libraries=("google/protobuf/", "boost/", "fmt/", "CLI/", "posix"),
     ),
     "tests": Room(ours=("daemon", "drivers", "proto", "schema", "client"), libraries=("",)),
