@@ -43,8 +43,19 @@ ROOMS = {
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/simulate": Room(
-        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "proto/csv",
-              "schema"),
+        ours=(
+            "daemon/setup",
+            "daemon/servo",
+            "daemon/rt",
+            "daemon/load",
+            "daemon/engine",
+            "daemon/safety",
+            "daemon/ipc/convert",
+            "daemon/ipc/encode",
+            "proto/csv",
+            "proto/recording",
+            "schema",
+        ),
         libraries=("glm/", "fmt/"),
     ),
     "daemon": Room(
