@@ -28,6 +28,7 @@ def hapticctl(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 class Export(unittest.TestCase):
     folder: Path
+    recording: Path
 
     @classmethod
     def setUpClass(cls) -> None:
