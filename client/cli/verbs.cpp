@@ -18,6 +18,7 @@ void add_verbs(CLI::App& app, Command& command) {
   add_plot(app, command);
   add_record(app, command);
   add_recording(app, command);
+  add_export(app, command);
   add_arm(app, command);
   add_lease(app, command);
   add_pause(app, command);

@@ -18,7 +18,7 @@ struct SimulateOptions {
   bool verbose = false;     // the summary tells the transitions, too
 };
 
-/// Runs it and writes a summary to `summary`. Throws load::LoadError, drivers::DeviceError, OutputError.
+/// Runs it and writes a summary to `summary`. Throws load::LoadError, drivers::DeviceError, csv::OutputError.
 void simulate(const SimulateOptions& options, std::ostream& summary);
 
 }  // namespace haptic::simulate

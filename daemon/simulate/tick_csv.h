@@ -6,8 +6,8 @@
 #include <string>
 
 #include "engine/world.h"
+#include "proto/csv/csv_file.h"
 #include "servo/mailbox.h"
-#include "simulate/csv_file.h"
 
 namespace haptic::simulate {
 
@@ -20,7 +20,7 @@ struct CsvPaths {
 
 class TickCsv {
  public:
-  /// Throws OutputError, as everything here.
+  /// Throws csv::OutputError, as everything here.
   explicit TickCsv(const CsvPaths& paths);
 
   /// The rows of one tick at `time` (s). `snapshot` is that of the tick; `devices` are the names.
@@ -34,9 +34,9 @@ class TickCsv {
   void write_objects(double time, const engine::Scene& scene, const servo::Snapshot& snapshot);
   void write_devices(double time, const servo::Snapshot& snapshot, std::span<const std::string> devices);
 
-  std::optional<CsvFile> hips_;
-  std::optional<CsvFile> objects_;
-  std::optional<CsvFile> devices_;
+  std::optional<csv::CsvFile> hips_;
+  std::optional<csv::CsvFile> objects_;
+  std::optional<csv::CsvFile> devices_;
 };
 
 }  // namespace haptic::simulate

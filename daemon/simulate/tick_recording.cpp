@@ -3,8 +3,8 @@
 #include "ipc/convert.h"
 #include "ipc/encode.h"
 #include "load/describe_scene.h"
+#include "proto/csv/csv_file.h"
 #include "proto/recording/error.h"
-#include "simulate/csv_file.h"
 
 namespace haptic::simulate {
 namespace {
@@ -37,7 +37,7 @@ void or_output_error(Do action) {
   try {
     action();
   } catch (const recording::IoError& error) {
-    throw OutputError(error.what());
+    throw csv::OutputError(error.what());
   }
 }
 

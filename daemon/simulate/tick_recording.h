@@ -17,8 +17,8 @@ namespace haptic::simulate {
 
 class TickRecording {
  public:
-  /// Makes or empties the file; `devices` are the names in the order of the device set. Throws OutputError,
-  /// as everything here.
+  /// Makes or empties the file; `devices` are the names in the order of the device set. Throws
+  /// csv::OutputError, as everything here.
   TickRecording(const std::string& path, const load::LoadedScene& scene, double rate_hz,
                 std::span<const std::string> devices);
 

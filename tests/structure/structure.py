@@ -52,6 +52,7 @@ ROOMS = {
             "daemon/safety",
             "daemon/ipc/convert",
             "daemon/ipc/encode",
+            "proto/csv",
             "proto/recording",
             "schema",
         ),
@@ -68,12 +69,17 @@ ROOMS = {
     ),
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
+    "proto/csv": Room(),
     "proto/foxglove": Room(ours=("schema",)),
     "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
     "client/plot": Room(ours=("client/lib", "schema"), libraries=("google/protobuf/", "fmt/", "posix")),
+    "client/export": Room(
+        ours=("proto/csv", "proto/recording", "schema"),
+        libraries=("google/protobuf/", "fmt/", "hdf5.h", "posix"),
+    ),
     "client/cli": Room(
-        ours=("client/lib", "client/plot", "proto", "schema"),
+        ours=("client/lib", "client/plot", "client/export", "proto", "schema"),
         libraries=("google/protobuf/", "boost/", "fmt/", "CLI/", "posix"),
     ),
     "client/bridge": Room(

@@ -183,9 +183,9 @@ TEST_F(Simulate, WithoutASceneThereIsNothingToFeel) {
 
 TEST_F(Simulate, AFileThatCannotBeWrittenIsAnError) {
   options_.csv.objects = folder_.file("no/such/folder.csv");
-  EXPECT_THROW(run(0.01), OutputError);
+  EXPECT_THROW(run(0.01), csv::OutputError);
   options_.csv.objects = "/dev/full";
-  EXPECT_THROW(run(0.01), OutputError);
+  EXPECT_THROW(run(0.01), csv::OutputError);
 }
 
 TEST_F(Simulate, AConfigThatIsNotThereIsAnError) {

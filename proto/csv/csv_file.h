@@ -4,14 +4,12 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-namespace haptic::simulate {
+namespace haptic::csv {
 
 /// A file that cannot be written; what() names it and says why.
 class OutputError : public std::runtime_error {
@@ -29,8 +27,13 @@ class CsvFile {
   CsvFile& add(bool value);  // 1 or 0
   CsvFile& add(std::string_view text);
   CsvFile& add(const char* text) { return add(std::string_view(text)); }
-  CsvFile& add(const glm::dvec3& vector);      // x, y, z
-  CsvFile& add(const glm::dquat& quaternion);  // w, x, y, z
+  /// x, y, z of a vector, or w, x, y, z of a quaternion; glm's will do.
+  template <class Numbers>
+  requires requires(const Numbers& numbers) { numbers.x + numbers.y + numbers.z; }
+  CsvFile& add(const Numbers& numbers) {
+    if constexpr (requires { numbers.w; }) add(numbers.w);
+    return add(numbers.x).add(numbers.y).add(numbers.z);
+  }
 
   /// Throws OutputError when what was gathered cannot be written.
   void end_row();
@@ -51,4 +54,4 @@ class CsvFile {
   std::string buffer_;
 };
 
-}  // namespace haptic::simulate
+}  // namespace haptic::csv

@@ -1,10 +1,10 @@
-#include "simulate/csv_file.h"
+#include "proto/csv/csv_file.h"
 
 #include <cerrno>
 #include <charconv>
 #include <system_error>
 
-namespace haptic::simulate {
+namespace haptic::csv {
 
 namespace {
 
@@ -57,12 +57,6 @@ CsvFile& CsvFile::add(std::string_view text) {
   return *this;
 }
 
-CsvFile& CsvFile::add(const glm::dvec3& vector) { return add(vector.x).add(vector.y).add(vector.z); }
-
-CsvFile& CsvFile::add(const glm::dquat& quaternion) {
-  return add(quaternion.w).add(quaternion.x).add(quaternion.y).add(quaternion.z);
-}
-
 void CsvFile::end_row() {
   // the comma after the last field becomes the end of the row
   buffer_.back() = '\n';
@@ -84,4 +78,4 @@ void CsvFile::fail() const {
   throw OutputError(path_ + ": cannot be written: " + std::generic_category().message(errno));
 }
 
-}  // namespace haptic::simulate
+}  // namespace haptic::csv

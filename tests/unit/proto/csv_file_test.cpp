@@ -1,14 +1,16 @@
-#include "simulate/csv_file.h"
+#include "proto/csv/csv_file.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cstdlib>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 #include <random>
 
 #include "tests/support/temporary_folder.h"
 
-namespace haptic::simulate {
+namespace haptic::csv {
 namespace {
 
 TEST(CsvFile, WritesAHeaderAndRows) {
@@ -96,4 +98,4 @@ TEST(CsvFile, AFullDiskIsNoticedBeforeTheEnd) {
 }
 
 }  // namespace
-}  // namespace haptic::simulate
+}  // namespace haptic::csv

@@ -1,0 +1,93 @@
+"""Each request of the schema as a method."""
+
+from __future__ import annotations
+
+import os
+from abc import ABC, abstractmethod
+
+from haptic import v1
+
+_SCENE_TIMEOUT = 120.0  # s; a large mesh takes its time
+_SLOWEST_RATE = 100.0  # Hz
+
+
+class Calls(ABC):
+    """What a connection can ask. Each raises what the daemon answers, by its type (haptic.errors), or Unreachable."""
+
+    @property
+    @abstractmethod
+    def _patience(self) -> float:
+        """For an answer, in seconds."""
+
+    @abstractmethod
+    async def call(self, request: v1.Request, *, timeout: float | None = None) -> v1.Response:
+        """Sends any request of the schema and waits for its response."""
+
+    # --- looking ---------------------------------------------------------------------------------------------------
+
+    async def status(self) -> v1.Status:
+        """The tick, the rate, whether armed or paused, faults, and how much there is of what."""
+        return (await self.call(v1.Request(get_status=v1.GetStatus()))).status
+
+    async def devices(self) -> list[v1.DeviceStatus]:
+        """In the order of the config."""
+        return list((await self.call(v1.Request(list_devices=v1.ListDevices()))).devices.device)
+
+    async def scene(self) -> v1.SceneDescription:
+        """The scene that runs, and what was made of it."""
+        return (await self.call(v1.Request(get_scene=v1.GetScene()))).scene
+
+    async def stats(self, *, reset: bool = False) -> v1.Stats:
+        """How long ticks take and what the constraint does; `reset` begins to count anew afterwards."""
+        return (await self.call(v1.Request(get_stats=v1.GetStats(reset=reset)))).stats
+
+    # --- the scene: role SCRIPT ------------------------------------------------------------------------------------
+
+    async def load_scene(self, scene: v1.Scene) -> v1.SceneDescription:
+        """Runs another scene, sent from here: see haptic.read_scene(). It may name no mesh file."""
+        request = v1.Request(load_scene=v1.LoadScene(scene=scene))
+        return (await self.call(request, timeout=max(self._patience, _SCENE_TIMEOUT))).scene
+
+    async def load_scene_file(self, path: str | os.PathLike[str]) -> v1.SceneDescription:
+        """Runs another scene, which the daemon itself reads from a file on its machine, with the meshes it names."""
+        request = v1.Request(load_scene=v1.LoadScene(path=os.path.abspath(path)))
+        return (await self.call(request, timeout=max(self._patience, _SCENE_TIMEOUT))).scene
+
+    async def edit(self, *edits: v1.SceneEdit, expected_revision: int = 0) -> None:
+        """Changes the scene that runs, between two ticks: all of the edits (haptic.edits) or none.
+
+        Refused unless the scene of `expected_revision` runs; 0: whatever runs.
+        """
+        await self.call(
+            v1.Request(edit_scene=v1.EditScene(edit=edits, expected_revision=expected_revision)),
+            timeout=max(self._patience, _SCENE_TIMEOUT))
+
+    async def reset_scene(self) -> None:
+        """Puts all objects back to where they started."""
+        await self.call(v1.Request(reset_scene=v1.ResetScene()))
+
+    async def pause(self) -> None:
+        """Holds the scene still; no forces meanwhile. Raises NothingToDo if it is."""
+        await self.call(v1.Request(pause=v1.Pause()))
+
+    async def resume(self) -> None:
+        """Lets it go on. Raises NothingToDo if it does."""
+        await self.call(v1.Request(resume=v1.Resume()))
+
+    async def step(self, ticks: int = 1) -> None:
+        """Runs so many ticks while paused, at the servo's rate, and returns when they have run."""
+        await self.call(v1.Request(step=v1.Step(ticks=ticks)), timeout=self._patience + ticks / _SLOWEST_RATE)
+
+    # --- forces: role DRIVE; faults: role ADMIN --------------------------------------------------------------------
+
+    async def arm(self) -> None:
+        """Allows force. Raises NothingToDo if it is allowed, FaultLatched, or Refused while another client drives."""
+        await self.call(v1.Request(arm=v1.Arm()))
+
+    async def disarm(self) -> None:
+        """Forbids force. Raises NothingToDo if it is forbidden."""
+        await self.call(v1.Request(disarm=v1.Disarm()))
+
+    async def clear_fault(self) -> None:
+        """Clears what is latched. Find its cause first; raises NothingToDo if there is none."""
+        await self.call(v1.Request(clear_fault=v1.ClearFault()))
