@@ -10,7 +10,7 @@ namespace {
 // a client that names more wants all
 constexpr int kNames = 1024;
 
-constexpr const char* kTopicNames = "OBJECTS, HIPS, DEVICES, EVENTS, STATS";
+constexpr const char* kTopicNames = "OBJECTS, HIPS, DEVICES, EVENTS, STATS, INPUTS";
 
 v1::Error wrong(v1::Error::Code code, const std::string& field, const std::string& message) {
   v1::Error error = make_error(code, message);
@@ -83,6 +83,10 @@ void handle_subscribe(Desk& desk, const Caller& caller, const v1::Request& reque
             .filter = filter_of(wanted)};
   for (const int topic : wanted.topic()) {
     wish.topics |= topic_bit(static_cast<v1::Topic>(topic));
+  }
+  if ((wish.topics & topic_bit(v1::INPUTS)) != 0) {
+    // before anything that the client asks for next
+    desk.services.mailbox.wants_hash.store(true, std::memory_order_relaxed);
   }
   v1::Response response;
   response.mutable_subscribed()->set_subscription(desk.publisher.subscribe(caller.id, wish, caller.sink));

@@ -204,6 +204,9 @@ class Server::Impl {
 
   void poll() {
     const auto now = SteadyClock::now();
+    const bool records = publisher_.has_subscription_for(v1::INPUTS);
+    services_.mailbox.wants_hash.store(records, std::memory_order_relaxed);
+    scenes_.keep_scenes(records);
     servo_.poll(now);
     scenes_.poll(now);
     announcer_.poll(now);
