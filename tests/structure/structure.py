@@ -71,6 +71,8 @@ ROOMS = {
     ),
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
+    "proto/foxglove": Room(ours=("schema",)),
+    "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
     "client/cli": Room(
         ours=("client/lib", "proto", "schema"),
@@ -134,7 +136,7 @@ def room_of(path):
 
 def find(root, including, name):
     """The file that #include "name" means, relative to the root; "schema" for generated ones; None if there is none."""
-    if name.startswith("haptic/v1/") and name.endswith(".pb.h"):
+    if name.startswith(("haptic/v1/", "foxglove/")) and name.endswith(".pb.h"):
         return "schema" if (root / "proto" / (name[: -len(".pb.h")] + ".proto")).is_file() else None
     beside = str(Path(including).parent / name)
     for candidate in (beside, name, "daemon/" + name):
