@@ -15,6 +15,7 @@ void add_verbs(CLI::App& app, Command& command) {
   add_run(app, command);
   add_watch(app, command);
   add_stats(app, command);
+  add_replay(app, command);
   add_arm(app, command);
   add_pause(app, command);
   add_clear(app, command);

@@ -142,7 +142,7 @@ void fill_inputs(const servo::Snapshot& snapshot, v1::InputsFrame& out) {
     command.set_ticks(inputs.commands[i].ticks);
     command.set_scene_revision(inputs.commands[i].revision);
   }
-  if (inputs.hashed) out.set_state_hash(inputs.state_hash);
+  out.set_state_hash(inputs.state_hash);
 }
 
 std::int64_t nanoseconds_of(clockid_t clock) noexcept {

@@ -84,10 +84,6 @@ void handle_subscribe(Desk& desk, const Caller& caller, const v1::Request& reque
   for (const int topic : wanted.topic()) {
     wish.topics |= topic_bit(static_cast<v1::Topic>(topic));
   }
-  if ((wish.topics & topic_bit(v1::INPUTS)) != 0) {
-    // before anything that the client asks for next
-    desk.services.mailbox.wants_hash.store(true, std::memory_order_relaxed);
-  }
   v1::Response response;
   response.mutable_subscribed()->set_subscription(desk.publisher.subscribe(caller.id, wish, caller.sink));
   reply.send(std::move(response));

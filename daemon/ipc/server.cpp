@@ -204,9 +204,7 @@ class Server::Impl {
 
   void poll() {
     const auto now = SteadyClock::now();
-    const bool records = publisher_.has_subscription_for(v1::INPUTS);
-    services_.mailbox.wants_hash.store(records, std::memory_order_relaxed);
-    scenes_.keep_scenes(records);
+    scenes_.keep_scenes(publisher_.has_subscription_for(v1::INPUTS));
     servo_.poll(now);
     scenes_.poll(now);
     announcer_.poll(now);

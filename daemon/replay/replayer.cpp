@@ -34,11 +34,13 @@ v1::Capacity any_capacity() {
 
 engine::CarryMap carry_map(const v1::SceneDescription::Carry& carry) {
   engine::CarryMap map;
+  map.objects.reserve(static_cast<std::size_t>(carry.object_size()));
   for (const auto& object : carry.object()) {
     map.objects.push_back({.from = object.has_from() ? object.from() : engine::kNone,
                            .motion = object.motion(),
                            .contacts = object.contacts()});
   }
+  map.fingers.reserve(static_cast<std::size_t>(carry.finger_size()));
   for (const auto& finger : carry.finger()) {
     map.fingers.push_back(finger.has_from() ? finger.from() : engine::kNone);
   }
@@ -75,7 +77,9 @@ void Replayer::take(const v1::WorldState& state) {
   loop_.reset();
   names_.assign(state.device().begin(), state.device().end());
   devices_.clear();
+  devices_.reserve(names_.size());
   std::vector<drivers::Device*> pointers;
+  pointers.reserve(names_.size());
   for (const std::string& name : names_) {
     devices_.push_back(std::make_unique<RecordedDevice>(name));
     pointers.push_back(devices_.back().get());
@@ -90,7 +94,6 @@ void Replayer::take(const v1::WorldState& state) {
   // of the snapshots only the hash is used
   mailbox_ = std::make_unique<servo::Mailbox>(
       servo::Capacity{.objects = 0, .fingers = 0, .hips = 0, .contacts = 0, .devices = 0});
-  mailbox_->wants_hash.store(true, std::memory_order_relaxed);
   const servo::ServoSettings settings{.rate_hz = state.rate_hz(),
                                       .limits = {},
                                       .paused_from_start = state.paused(),

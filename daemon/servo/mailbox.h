@@ -7,7 +7,6 @@
 //     io thread  <-- Event ---   servo thread        answers, faults, memory to free; a lost event is counted
 //     io thread  <-- Snapshot -- servo thread        a ring; a slow io thread loses the oldest, counted
 //     io thread  <-- LoopStats - servo thread        newest value
-//     io thread  -- wants_hash -> servo thread       a flag
 
 #include <array>
 #include <atomic>
@@ -110,7 +109,6 @@ struct TickInputs {
   std::uint64_t missed = 0;                                 // periods slept through just before the tick
   std::array<AppliedCommand, kCommandsPerTick> commands{};  // in the order in which they were obeyed
   std::size_t command_count = 0;
-  bool hashed = false;           // somebody wanted it: Mailbox::wants_hash
   std::uint64_t state_hash = 0;  // engine::hash after the tick
 };
 
@@ -236,7 +234,6 @@ struct Mailbox {
   boost::lockfree::spsc_queue<Event, boost::lockfree::capacity<1024>> events;
   SnapshotRing snapshots;
   rt::TripleBuffer<LoopStats> stats;
-  std::atomic<bool> wants_hash{false};  // io thread writes it; hashing costs about as much as half a tick
 };
 
 }  // namespace haptic::servo

@@ -57,7 +57,17 @@ ROOMS = {
         libraries=("glm/", "google/protobuf/"),
     ),
     "daemon/simulate": Room(
-        ours=("daemon/setup", "daemon/servo", "daemon/rt", "daemon/load", "daemon/engine", "daemon/safety", "schema"),
+        ours=(
+            "daemon/setup",
+            "daemon/replay",
+            "daemon/servo",
+            "daemon/rt",
+            "daemon/load",
+            "daemon/engine",
+            "daemon/safety",
+            "proto/recording",
+            "schema",
+        ),
         libraries=("glm/", "fmt/"),
     ),
     "daemon": Room(

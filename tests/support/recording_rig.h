@@ -61,7 +61,6 @@ class RecordingRig {
     loop_ = std::make_unique<servo::ServoLoop>(servo::ServoSettings{.limits = wide_limits()},
                                                std::vector<drivers::Device*>{&left_, &right_},
                                                std::move(built.prepared), *mailbox_);
-    mailbox_->wants_hash.store(true);
   }
 
   const std::vector<Item>& items() const { return items_; }
