@@ -95,6 +95,7 @@ void add_simulate(CLI::App& app, SimulateChoice& choice, Action& action) {
   verb->add_option("--objects-csv", options.csv.objects,
                    "poses and velocities of objects, and what HIPs apply");
   verb->add_option("--devices-csv", options.csv.devices, "poses of devices, and the forces behind the guard");
+  verb->add_option("--record", options.recording, "all of it as an MCAP file, as hapticctl record makes one");
   verb->add_flag("--verbose", options.verbose, "the summary tells the transitions of the constraint, too");
   verb->add_option("--replay", choice.replay.file,
                    "instead of all this, runs a recording again and compares every tick with it, to the bit: "

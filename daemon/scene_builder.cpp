@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/carry_map.h"
+#include "load/describe_scene.h"
 #include "load/error.h"
 #include "load/scene_edit.h"
 #include "servo/prepare_scene.h"
@@ -11,27 +12,6 @@
 namespace haptic {
 
 namespace {
-
-v1::SceneDescription describe(const load::LoadedScene& loaded) {
-  v1::SceneDescription description;
-  *description.mutable_scene() = loaded.message;
-  for (const engine::Object& object : loaded.scene.objects) {
-    v1::SceneDescription::ObjectDescription& told = *description.add_object();
-    told.set_name(object.name);
-    told.set_cells(static_cast<std::uint32_t>(object.cells->cells().size()));
-    told.set_vertices(static_cast<std::uint32_t>(object.cells->vertices().size()));
-    told.set_bytes(object.cells->bytes());
-    told.set_mass(object.dynamic ? object.dynamics.mass.mass : 0.0);
-  }
-  for (const engine::Finger& finger : loaded.scene.fingers) {
-    v1::SceneDescription::FingerDescription& told = *description.add_finger();
-    told.set_name(finger.name);
-    told.set_device(finger.device);
-    told.set_first_hip(static_cast<std::uint32_t>(finger.first_hip));
-    told.set_hips(static_cast<std::uint32_t>(finger.hips.size()));
-  }
-  return description;
-}
 
 v1::SceneDescription::Carry describe(const servo::Carry& carry) {
   v1::SceneDescription::Carry told;
@@ -107,7 +87,7 @@ ipc::BuiltScene SceneBuilder::finish(const std::shared_ptr<const load::LoadedSce
   constexpr std::uint64_t kNotYetNumbered = 0;
   const std::shared_ptr<const engine::Scene> scene(loaded, &loaded->scene);
   return {.prepared = servo::prepare_scene(scene, kNotYetNumbered, devices_),
-          .description = describe(*loaded)};
+          .description = load::describe(*loaded)};
 }
 
 }  // namespace haptic

@@ -15,6 +15,8 @@ void add_verbs(CLI::App& app, Command& command) {
   add_run(app, command);
   add_watch(app, command);
   add_stats(app, command);
+  add_record(app, command);
+  add_recording(app, command);
   add_replay(app, command);
   add_arm(app, command);
   add_pause(app, command);

@@ -23,6 +23,8 @@ void add_pause(CLI::App& app, Command& command);       // pause, resume, step
 void add_clear(CLI::App& app, Command& command);
 void add_watch(CLI::App& app, Command& command);
 void add_stats(CLI::App& app, Command& command);
+void add_record(CLI::App& app, Command& command);
+void add_recording(CLI::App& app, Command& command);  // info, recover
 void add_replay(CLI::App& app, Command& command);
 void add_certificates(CLI::App& app, Command& command);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "load/describe_scene.h"
 #include "load/ranges.h"
 #include "load/read_file.h"
 
@@ -12,25 +13,6 @@ namespace {
 using engine::CellComplex;
 using engine::Index;
 using engine::kNone;
-using engine::Material;
-
-bool is_free(const Material& material) { return material.yield_force == 0.0 && material.drag == 0.0; }
-
-bool same_motion(const Material& a, const Material& b) {
-  return a.yield_force == b.yield_force && a.drag == b.drag && a.static_friction == b.static_friction &&
-         a.kinetic_friction == b.kinetic_friction;
-}
-
-std::size_t surface_triangles(const engine::Object& object) {
-  const auto cells = object.cells->cells();
-  const auto material = [&](Index cell) -> const Material& { return object.materials[cells[cell].region]; };
-  std::size_t count = 0;
-  for (const engine::Face& face : object.cells->faces()) {
-    const Material& own = material(face.cells[0]);
-    count += face.cells[1] == kNone ? !is_free(own) : !same_motion(own, material(face.cells[1]));
-  }
-  return count;
-}
 
 ObjectReport report_object(const engine::Object& object) {
   const CellComplex& cells = *object.cells;
@@ -42,7 +24,7 @@ ObjectReport report_object(const engine::Object& object) {
   report.vertices = cells.vertices().size();
   report.edges = cells.edges().size();
   report.faces = cells.faces().size();
-  report.surface_triangles = surface_triangles(object);
+  report.surface_triangles = surface_faces(object).size();
   report.bytes = cells.bytes();
   for (Index edge = 0; edge < report.edges; ++edge) {
     report.most_cells_at_edge = std::max(report.most_cells_at_edge, cells.cells_of_edge(edge).size());

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "servo/servo_loop.h"
 #include "setup/device_set.h"
 #include "setup/settings.h"
+#include "simulate/tick_recording.h"
 
 namespace haptic::simulate {
 
@@ -22,16 +24,24 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-std::shared_ptr<const engine::Scene> scene_of(const SimulateOptions& options,
-                                              const v1::DaemonConfig& config) {
+std::shared_ptr<const load::LoadedScene> scene_of(const SimulateOptions& options,
+                                                  const v1::DaemonConfig& config) {
   const std::string& file = options.scene.empty() ? config.scene() : options.scene;
-  if (file.empty()) return std::make_shared<const engine::Scene>();
-  const std::shared_ptr<const load::LoadedScene> loaded = load::load_scene(file, config.capacity());
-  return {loaded, &loaded->scene};
+  if (file.empty()) return std::make_shared<const load::LoadedScene>();
+  return load::load_scene(file, config.capacity());
+}
+
+// HIPs in snapshots cost time that only a recording is worth
+servo::Capacity capacity_for(const engine::Scene& scene, std::size_t devices, bool records) {
+  return {.objects = scene.objects.size(),
+          .fingers = 0,
+          .hips = records ? scene.hip_count : 0,
+          .contacts = records ? scene.hip_count * scene.objects.size() : 0,
+          .devices = devices};
 }
 
 void tell_faults(servo::Mailbox& mailbox, double rate_hz, std::span<const std::string> devices,
-                 std::ostream& summary) {
+                 TickRecording* recording, std::uint64_t time_ns, std::ostream& summary) {
   mailbox.events.consume_all([&](const servo::Event& event) {
     if (event.kind != servo::EventKind::kFaultLatched) return;
     const safety::Fault& fault = event.fault;
@@ -39,6 +49,7 @@ void tell_faults(servo::Mailbox& mailbox, double rate_hz, std::span<const std::s
     summary << fmt::format("fault at {} s: {}{}: {:.6g}, allowed {:.6g}; forces are zero from then on\n",
                            static_cast<double>(fault.tick) / rate_hz, safety::name_of(fault.kind), device,
                            fault.value, fault.limit);
+    if (recording != nullptr) recording->write(fault, time_ns);
   });
 }
 
@@ -64,19 +75,20 @@ void tell_transitions(const engine::TransitionTable& table, std::ostream& summar
 
 void simulate(const SimulateOptions& options, std::ostream& summary) {
   const load::LoadedConfig config = load::load_config(options.config);
-  const std::shared_ptr<const engine::Scene> scene = scene_of(options, config.message);
+  const std::shared_ptr<const load::LoadedScene> loaded = scene_of(options, config.message);
+  const std::shared_ptr<const engine::Scene> scene(loaded, &loaded->scene);
   setup::DeviceSet devices(config);
   TickCsv csv(options.csv);
 
-  // of the snapshots only objects and devices are used; HIPs are taken from the world itself
-  const auto mailbox = std::make_unique<servo::Mailbox>(servo::Capacity{.objects = scene->objects.size(),
-                                                                        .fingers = 0,
-                                                                        .hips = 0,
-                                                                        .contacts = 0,
-                                                                        .devices = devices.names().size()});
+  const auto mailbox = std::make_unique<servo::Mailbox>(
+      capacity_for(*scene, devices.names().size(), !options.recording.empty()));
   servo::ServoSettings settings = setup::servo_settings(config.message);
   settings.armed_from_start = true;
   if (options.verbose) settings.clock = &setup::stage_clock;
+  std::optional<TickRecording> recording;
+  if (!options.recording.empty()) {
+    recording.emplace(options.recording, *loaded, settings.rate_hz, devices.names());
+  }
   devices.start();
   servo::ServoLoop loop(settings, devices.devices(), servo::prepare_scene(scene, 1, devices.names()),
                         *mailbox);
@@ -87,10 +99,14 @@ void simulate(const SimulateOptions& options, std::ostream& summary) {
   std::uint64_t tick = 0;
   for (; time_of(tick) <= options.duration; ++tick) {
     loop.tick({.tick = tick, .time = schedule.due_ns(tick)});
-    csv.write(time_of(tick), loop.scene().world, *mailbox->snapshots.take(), devices.names());
-    tell_faults(*mailbox, settings.rate_hz, devices.names(), summary);
+    const servo::Snapshot& snapshot = *mailbox->snapshots.take();
+    csv.write(time_of(tick), loop.scene().world, snapshot, devices.names());
+    if (recording) recording->write(snapshot);
+    tell_faults(*mailbox, settings.rate_hz, devices.names(), recording ? &*recording : nullptr,
+                schedule.due_ns(tick), summary);
   }
   csv.close();
+  if (recording) recording->close();
 
   const double took = std::chrono::duration<double>(SteadyClock::now() - started).count();
   const double simulated = time_of(tick);

@@ -14,7 +14,8 @@ struct SimulateOptions {
   std::string scene;      // empty: the one that the config names
   double duration = 0.0;  // s; every tick with n / rate <= duration is run
   CsvPaths csv{};
-  bool verbose = false;  // the summary tells the transitions, too
+  std::string recording{};  // an MCAP file to write; empty: none
+  bool verbose = false;     // the summary tells the transitions, too
 };
 
 /// Runs it and writes a summary to `summary`. Throws load::LoadError, drivers::DeviceError, OutputError.

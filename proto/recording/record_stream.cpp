@@ -72,6 +72,9 @@ std::optional<Record> ChunkRecords::next() {
     return std::nullopt;
   }
   const Prefix prefix = parse_prefix(left);
+  if (static_cast<std::uint8_t>(prefix.opcode) == 0) {
+    throw FormatError("a record in a chunk is none");
+  }
   if (prefix.length > left.size() - kRecordPrefix) {
     throw FormatError("a record in a chunk goes on beyond its end");
   }

@@ -65,6 +65,8 @@ ROOMS = {
             "daemon/load",
             "daemon/engine",
             "daemon/safety",
+            "daemon/ipc/convert",
+            "daemon/ipc/encode",
             "proto/recording",
             "schema",
         ),

@@ -1,0 +1,228 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "client/cli/describe.h"
+#include "client/cli/look.h"
+#include "client/cli/screen.h"
+#include "client/cli/verbs.h"
+#include "proto/recording/error.h"
+#include "proto/recording/session.h"
+
+namespace haptic::cli {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using recording::FileSink;
+
+// a chunk is written at least so often, and the line on the terminal
+constexpr std::chrono::milliseconds kPeriod{500};
+
+struct RecordOptions {
+  std::string file;
+  std::vector<v1::Topic> topics;
+  std::uint32_t decimation = 1;
+  double seconds = 0.0;  // 0: until stopped
+  bool replace = false;
+  bool no_viewers = false;
+};
+
+// what has come in
+struct Counts {
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t gaps = 0;
+};
+
+class Recorder {
+ public:
+  Recorder(Command& command, const RecordOptions& options)
+      : json_(command.json),
+        live_(!command.json && is_terminal()),
+        options_(options),
+        daemon_(command.connect()),
+        sink_(options.file, options.replace ? FileSink::IfThere::kReplace : FileSink::IfThere::kRefuse,
+              FileSink::Durable::kYes) {}
+
+  // Whatever ends the recording, the file is closed as well as it can be, and told of.
+  ExitCode run() {
+    catch_stop_signals();
+    std::exception_ptr failure;
+    try {
+      begin();
+      record();
+    } catch (const std::exception&) {
+      failure = std::current_exception();
+    }
+    try {
+      end();
+    } catch (const recording::IoError&) {
+      failure = failure ? failure : std::current_exception();
+    }
+    tell_result();
+    if (failure) {
+      std::rethrow_exception(failure);
+    }
+    if (!stop_requested()) {
+      daemon_.unsubscribe(subscription_);  // a script goes on with this connection
+    }
+    return kDone;
+  }
+
+ private:
+  void begin() {
+    const v1::Response status = call(daemon_, [](v1::Request& request) { request.mutable_get_status(); });
+    writer_.emplace(sink_, recording::Session{.program = "hapticctl " HAPTIC_VERSION,
+                                              .daemon_version = status.status().version(),
+                                              .rate_hz = status.status().rate_hz(),
+                                              .decimation = options_.decimation,
+                                              .viewers = !options_.no_viewers});
+    v1::Subscribe wish;
+    wish.mutable_topic()->Assign(options_.topics.begin(), options_.topics.end());
+    wish.set_decimation(options_.decimation);
+    wish.set_delivery(v1::LOSSLESS);
+    subscription_ = daemon_.subscribe(wish);
+  }
+
+  void record() {
+    const SteadyClock::time_point start = SteadyClock::now();
+    SteadyClock::time_point next = start + kPeriod;
+    while (!stop_requested()) {
+      const SteadyClock::time_point now = SteadyClock::now();
+      seconds_ = std::chrono::duration<double>(now - start).count();
+      if (options_.seconds > 0.0 && seconds_ >= options_.seconds) {
+        return;
+      }
+      if (now >= next) {
+        writer_->flush();
+        show_progress();
+        next = now + kPeriod;
+      }
+      if (const auto message = daemon_.receive(std::chrono::milliseconds(100))) {
+        take(*message);
+      }
+    }
+  }
+
+  void take(const v1::Envelope& message) {
+    if (message.has_frame() && message.frame().subscription() == subscription_) {
+      const v1::Frame& frame = message.frame();
+      time_ = frame.realtime_ns();
+      if (!scene_revision_ || frame.scene_revision() > *scene_revision_) {
+        write_scene();
+      }
+      writer_->write(frame);
+      ++counts_.frames;
+    } else if (message.has_gap() && message.gap().subscription() == subscription_) {
+      writer_->write(message.gap(), time_);
+      counts_.lost += message.gap().last_sequence() - message.gap().first_sequence() + 1;
+      ++counts_.gaps;
+    }
+  }
+
+  // before the first frame that it is for; frames that come meanwhile wait
+  void write_scene() {
+    const v1::Response scene = call(daemon_, [](v1::Request& request) { request.mutable_get_scene(); });
+    if (!scene_revision_) {
+      const v1::Response devices =
+          call(daemon_, [](v1::Request& request) { request.mutable_list_devices(); });
+      writer_->write(devices.devices(), time_);
+    }
+    writer_->write(scene.scene(), time_);
+    scene_revision_ = scene.scene().revision();
+  }
+
+  void end() {
+    if (writer_) {
+      writer_->close();
+      sink_.close();
+    }
+  }
+
+  void show_progress() {
+    if (!live_) {
+      return;
+    }
+    constexpr double kPeriods = 1.0 / std::chrono::duration<double>(kPeriod).count();
+    const std::uint64_t size = writer_->writer().size();
+    const auto rate = static_cast<double>(counts_.frames - shown_.frames) * kPeriods;
+    const auto growth = static_cast<double>(size - shown_size_) * kPeriods;
+    fmt::print("\r{}  {} ({:.0f}/s)  {} ({}/s)  {} lost\033[K", duration(seconds_),
+               count_of(counts_.frames, "frame"), rate, bytes(size),
+               bytes(static_cast<std::uint64_t>(growth)), counts_.lost);
+    std::fflush(stdout);
+    shown_ = counts_;
+    shown_size_ = size;
+  }
+
+  void tell_result() const {
+    if (!writer_) {
+      return;
+    }
+    const recording::Writer& writer = writer_->writer();
+    if (json_) {
+      google::protobuf::Struct result;
+      auto& fields = *result.mutable_fields();
+      fields["file"] = json(options_.file);
+      fields["seconds"] = json(seconds_);
+      fields["frames"] = json(static_cast<double>(counts_.frames));
+      fields["messages"] = json(static_cast<double>(writer.statistics().message_count));
+      fields["bytes"] = json(static_cast<double>(writer.size()));
+      fields["gaps"] = json(static_cast<double>(counts_.gaps));
+      fields["lost_frames"] = json(static_cast<double>(counts_.lost));
+      print_json(result);
+      return;
+    }
+    fmt::print("{}{}: {} in {}, {}; {}\n", live_ ? "\r\033[K" : "", options_.file,
+               count_of(counts_.frames, "frame"), duration(seconds_), bytes(writer.size()),
+               counts_.lost == 0 ? "none is lost"
+                                 : fmt::format("{} lost in {}", count_of(counts_.lost, "frame"),
+                                               count_of(counts_.gaps, "gap")));
+    std::fflush(stdout);
+  }
+
+  bool json_;
+  bool live_;
+  RecordOptions options_;
+  client::Connection& daemon_;
+  FileSink sink_;
+  std::optional<recording::SessionWriter> writer_;
+  std::uint32_t subscription_ = 0;
+  std::optional<std::uint64_t> scene_revision_;
+  std::uint64_t time_ = 0;  // of the newest frame, ns
+  double seconds_ = 0.0;
+  Counts counts_;
+  Counts shown_;
+  std::uint64_t shown_size_ = 0;
+};
+
+}  // namespace
+
+void add_record(CLI::App& app, Command& command) {
+  const auto options = std::make_shared<RecordOptions>();
+  options->topics = {v1::OBJECTS, v1::HIPS, v1::DEVICES, v1::EVENTS, v1::STATS};
+  CLI::App* verb = add_verb(app, command, "record", "writes what happens to an MCAP file; Ctrl-C ends it",
+                            [options](Command& chosen) { return Recorder(chosen, *options).run(); });
+  verb->add_option("file", options->file, "the recording")->required()->type_name("FILE");
+  verb->add_option("--seconds", options->seconds, "end after so long")->check(CLI::PositiveNumber);
+  const std::map<std::string, v1::Topic> topics = {{"objects", v1::OBJECTS},
+                                                   {"hips", v1::HIPS},
+                                                   {"devices", v1::DEVICES},
+                                                   {"events", v1::EVENTS},
+                                                   {"stats", v1::STATS}};
+  verb->add_option("--topic,--topics", options->topics, "objects, hips, devices, events, stats; default: all")
+      ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
+      ->type_name("TOPIC")
+      ->delimiter(',');
+  verb->add_option("--decimation", options->decimation, "one frame for so many ticks; default: each tick")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb->add_flag("--replace", options->replace, "the file may be there already; it is lost then");
+  verb->add_flag("--no-viewers", options->no_viewers, "without the topics that are for viewers alone");
+}
+
+}  // namespace haptic::cli
