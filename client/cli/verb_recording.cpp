@@ -79,7 +79,7 @@ std::uint64_t messages_of(const recording::Statistics& statistics, std::uint16_t
 
 // Hz over the whole recording; 0 where that means nothing
 double rate_of(std::uint64_t messages, double seconds) {
-  return messages < 2 || seconds <= 0.0 ? 0.0 : static_cast<double>(messages) / seconds;
+  return messages < 2 || seconds <= 0.0 ? 0.0 : static_cast<double>(messages - 1) / seconds;
 }
 
 // "2026-11-21 12:34:56 UTC"; a virtual clock begins at 0

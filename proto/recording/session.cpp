@@ -9,7 +9,8 @@
 namespace haptic::recording {
 namespace {
 
-constexpr std::uint64_t kDrawingPeriod = 20'000'000;  // ns
+constexpr std::uint64_t kDrawingPeriod = 20'000'000;   // ns
+constexpr std::uint64_t kClockWasSet = 1'000'000'000;  // ns
 
 std::string to_text(double number) {
   std::array<char, 32> text{};
@@ -139,7 +140,9 @@ void SessionWriter::put(const std::string& topic, const google::protobuf::Messag
                         std::uint64_t sequence, std::uint64_t time_ns) {
   const std::uint16_t id = channel(topic, *message.GetDescriptor());
   message.SerializeToString(&buffer_);
-  writer_.write({id, static_cast<std::uint32_t>(sequence), time_ns, time_ns, buffer_});
+  const bool overtaken = time_ns < last_time_ && last_time_ - time_ns < kClockWasSet;
+  last_time_ = overtaken ? last_time_ : time_ns;
+  writer_.write({id, static_cast<std::uint32_t>(sequence), last_time_, time_ns, buffer_});
 }
 
 std::uint16_t SessionWriter::channel(const std::string& topic, const google::protobuf::Descriptor& type) {

@@ -14,7 +14,10 @@
 //     /foxglove/log            foxglove.Log
 //
 // Those below /foxglove are for viewers (proto/foxglove/scene_view.h), transforms and HIPs 50 times a second.
-// The metadata "hapticd" tell who recorded what (Session). log_time is the realtime_ns of the frame.
+// The metadata "hapticd" tell who recorded what (Session). publish_time is the
+// realtime_ns of the frame; log_time is the same, but never before that of the message before it, as
+// statistics and events overtake frames by some milliseconds. It goes back only when the clock was set back
+// by a second or more.
 
 #include <array>
 #include <cstdint>
@@ -82,6 +85,7 @@ class SessionWriter {
   std::map<std::string, std::uint16_t> schemas_;   // by type
   v1::SceneDescription scene_;
   std::vector<std::string> devices_;
+  std::uint64_t last_time_ = 0;  // log_time of the last message
   std::uint64_t next_drawing_ = 0;
   std::string buffer_;
 };

@@ -193,39 +193,56 @@ describe("a simulated run", () => {
   });
 });
 
+/** A daemon of its own, as soon as it answers. */
+async function startDaemon(name) {
+  const socket = join(folder, `${name}.sock`);
+  const daemon = spawn(hapticd, ["run", "--config", join(root, "config/demo.txtpb"), "--socket", socket], {
+    stdio: "ignore" });
+  daemon.gone = new Promise((resolve) => daemon.on("exit", resolve));
+  for (let i = 0; i < 300; ++i) {
+    if (existsSync(socket) && spawnSync(hapticctl, ["--socket", socket, "status"]).status === 0) {
+      return { daemon, socket };
+    }
+    await sleep(100);
+  }
+  return assert.fail("the daemon does not answer");
+}
+
+/** hapticctl record, as soon as there is something in its file. */
+async function startRecorder(socket, file, ...options) {
+  const recorder = spawn(hapticctl, ["--socket", socket, "record", file, ...options], { stdio: "pipe" });
+  recorder.output = "";
+  for (const stream of [recorder.stdout, recorder.stderr]) {
+    stream.on("data", (text) => {
+      recorder.output += text;
+    });
+  }
+  recorder.done = new Promise((resolve) => recorder.on("close", resolve));
+  for (let i = 0; i < 300 && !(existsSync(file) && statSync(file).size > 20_000); ++i) {
+    await sleep(100);
+  }
+  return recorder;
+}
+
 describe("a recording of the daemon", () => {
   let daemon;
   let socket;
   before(async () => {
-    socket = join(folder, "hapticd.sock");
-    daemon = spawn(hapticd, ["run", "--config", join(root, "config/demo.txtpb"), "--socket", socket], {
-      stdio: "ignore" });
-    for (let i = 0; i < 300; ++i) {
-      if (existsSync(socket) && spawnSync(hapticctl, ["--socket", socket, "status"]).status === 0) {
-        return;
-      }
-      await sleep(100);
-    }
-    assert.fail("the daemon does not answer");
+    ({ daemon, socket } = await startDaemon("served"));
   });
   after(async () => {
-    const gone = new Promise((resolve) => daemon.on("exit", resolve));
     daemon.kill("SIGTERM");
-    await gone;
+    await daemon.gone;
   });
 
   for (const signal of ["SIGINT", "SIGTERM"]) {
     it(`that ${signal} ends is whole, with the events and scenes of its time`, async () => {
       const file = join(folder, `${signal}.mcap`);
-      const recorder = spawn(hapticctl, ["--socket", socket, "record", file], { stdio: "pipe" });
-      const done = new Promise((resolve) => recorder.on("exit", resolve));
-      for (let i = 0; i < 300 && !(existsSync(file) && statSync(file).size > 20_000); ++i) {
-        await sleep(100);
-      }
+      const recorder = await startRecorder(socket, file);
       execFileSync(hapticctl, ["--socket", socket, "gravity", "set", "0", "-1", "0"], { stdio: "pipe" });
       await sleep(1500);
       recorder.kill(signal);
-      assert.equal(await done, 0);
+      assert.equal(await recorder.done, 0);
 
       const bytes = readFileSync(file);
       const { reader, topics } = await readIndexed(bytes);
@@ -246,6 +263,7 @@ describe("a recording of the daemon", () => {
         sequences.forEach((sequence, i) => assert.equal(sequence, sequences[0] + i));
       }
       assert(ticks.length > 500);
+      checkAsDoctor(bytes, reader);
       assert.equal(reader.metadataIndexes[0].name, "hapticd");
     });
   }
@@ -257,6 +275,84 @@ describe("a recording of the daemon", () => {
     assert.equal(result.status, 1);
     assert.match(result.stderr.toString(), /File exists/);
     assert.equal(statSync(file).size, size);
+  });
+
+  it("tells which frames it could not take, and goes on", async () => {
+    const file = join(folder, "gaps.mcap");
+    const recorder = await startRecorder(socket, file, "--json");
+    recorder.kill("SIGSTOP");
+    await sleep(5000); // the daemon keeps a second or so
+    recorder.kill("SIGCONT");
+    await sleep(2000);
+    recorder.kill("SIGINT");
+    assert.equal(await recorder.done, 0);
+    const told = JSON.parse(recorder.output);
+    assert(told.gaps > 0);
+    assert(told.lost_frames > 500, recorder.output);
+
+    const { topics } = await readIndexed(readFileSync(file));
+    const lost = new Set();
+    for (const { value } of topics.get("/haptic/gaps")) {
+      for (let i = Number(value.first_sequence); i <= Number(value.last_sequence); ++i) {
+        lost.add(i);
+      }
+    }
+    assert.equal(lost.size, told.lost_frames);
+    const taken = new Set();
+    for (const topic of ["objects", "events", "stats"]) {
+      for (const { value } of topics.get(`/haptic/${topic}`) ?? []) {
+        taken.add(Number(value.sequence));
+      }
+    }
+    // each is either there or told to be lost
+    for (let i = 1; i <= Math.max(...taken); ++i) {
+      assert.notEqual(taken.has(i), lost.has(i), `frame ${i}`);
+    }
+    const info = JSON.parse(execFileSync(hapticctl, ["info", file, "--json"]));
+    assert.equal(info.lost_frames, told.lost_frames);
+  });
+
+  it("shows its progress in one line of a terminal", () => {
+    const file = join(folder, "terminal.mcap");
+    const command = `'${hapticctl}' --socket '${socket}' record '${file}' --seconds 1.3`;
+    const shown = execFileSync("script", ["--quiet", "--return", "--command", command, "/dev/null"]).toString();
+    assert.match(shown, /\r\d+(\.\d+)? s  \d+ frames \(\d+\/s\)  .* 0 lost/);
+    assert.match(shown, /terminal\.mcap: \d+ frames in .*; none is lost/);
+    assert.equal(shown.trimEnd().split("\n").length, 1);
+  });
+
+  it("onto a full disk ends with a clear error", () => {
+    const result = spawnSync(hapticctl, ["--socket", socket, "record", "/dev/full", "--replace"]);
+    assert.equal(result.status, 1);
+    assert.match(result.stderr.toString(), /\/dev\/full: cannot be written: No space left on device/);
+  });
+
+  it("is closed well when the daemon goes away, which the exit status tells", async () => {
+    const other = await startDaemon("killed");
+    const file = join(folder, "killed.mcap");
+    const recorder = await startRecorder(other.socket, file);
+    other.daemon.kill("SIGKILL");
+    await other.daemon.gone;
+    const UNREACHABLE = 5;
+    assert.equal(await recorder.done, UNREACHABLE);
+    const { topics } = await readIndexed(readFileSync(file));
+    assert(topics.get("/haptic/objects").length > 0);
+  });
+
+  it("that was killed is read and recovered up to its last chunk", async () => {
+    const file = join(folder, "crashed.mcap");
+    const recorder = await startRecorder(socket, file);
+    await sleep(1500);
+    recorder.kill("SIGKILL");
+    await recorder.done;
+    const cut = JSON.parse(execFileSync(hapticctl, ["info", file, "--json"]));
+    assert.equal(cut.whole, false);
+    assert(cut.seconds > 0.5);
+    execFileSync(hapticctl, ["recover", file], { stdio: "pipe" });
+    const recovered = readFileSync(join(folder, "crashed.recovered.mcap"));
+    const { reader } = await readIndexed(recovered);
+    assert.equal(Number(reader.statistics.messageCount), cut.messages);
+    checkAsDoctor(recovered, reader);
   });
 
   it("has the chosen topics, decimated, and tells what it holds", () => {

@@ -146,6 +146,20 @@ TEST_F(SessionTest, PicturesGoOnWhenTheClockWasSetBack) {
   writer_.write(frame_at(5));
   close();
   EXPECT_EQ(count("/foxglove/hips"), 2U);
+  EXPECT_EQ(recording_->statistics().start_time, 5 * kMillisecond);
+}
+
+TEST_F(SessionTest, TimeDoesNotGoBackWhenAnEventHasOvertakenAFrame) {
+  v1::Frame event;
+  event.set_realtime_ns(5 * kMillisecond);
+  event.mutable_event()->set_message("armed");
+  writer_.write(event);
+  writer_.write(frame_at(3));
+  close();
+  auto messages = recording_->messages({.topics = {"/haptic/objects"}});
+  ASSERT_TRUE(messages.next());
+  EXPECT_EQ(messages.message().log_time, 5 * kMillisecond);
+  EXPECT_EQ(messages.message().publish_time, 3 * kMillisecond);
 }
 
 TEST_F(SessionTest, EveryChannelCanBeReadByItsOwnSchema) {
