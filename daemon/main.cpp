@@ -13,6 +13,7 @@
 #include "daemon/run.h"
 #include "ipc/tls.h"
 #include "load/check.h"
+#include "simulate/replay_file.h"
 #include "simulate/simulate.h"
 
 namespace {
@@ -55,7 +56,34 @@ void add_check(CLI::App& app, haptic::load::CheckOptions& options, Action& actio
   verb->callback([&] { action = [&] { return haptic::load::check(options, std::cout, std::cerr); }; });
 }
 
-void add_simulate(CLI::App& app, haptic::simulate::SimulateOptions& options, Action& action) {
+struct SimulateChoice {
+  haptic::simulate::SimulateOptions options;
+  haptic::simulate::ReplayOptions replay;  // instead, if it has a file
+};
+
+int simulate(const SimulateChoice& choice) {
+  if (!choice.replay.file.empty()) {
+    return haptic::simulate::replay(choice.replay, std::cout) ? kDone : kFailed;
+  }
+  haptic::simulate::simulate(choice.options, std::cerr);
+  return kDone;
+}
+
+/// A config and a duration, or a recording.
+void check_choice(const CLI::App& verb) {
+  const bool replays = verb.count("--replay") > 0;
+  for (const CLI::Option* const option : verb.get_options()) {
+    const std::string name = option->get_name();
+    const bool of_replay = name == "--replay" || name == "--json";
+    const bool is_needed = name == "--config" || name == "--duration";
+    if (replays && !of_replay && !option->empty()) throw CLI::ExcludesError("--replay", name);
+    if (!replays && name == "--json" && !option->empty()) throw CLI::RequiresError(name, "--replay");
+    if (!replays && is_needed && option->empty()) throw CLI::RequiredError(name);
+  }
+}
+
+void add_simulate(CLI::App& app, SimulateChoice& choice, Action& action) {
+  haptic::simulate::SimulateOptions& options = choice.options;
   CLI::App* const verb = app.add_subcommand(
       "simulate", "Runs the tick without a clock, as fast as the machine allows, into files");
   const CLI::Validator not_negative(
@@ -66,10 +94,10 @@ void add_simulate(CLI::App& app, haptic::simulate::SimulateOptions& options, Act
         return good ? std::string() : text + " is no duration (permitted: a number of seconds from 0 on)";
       },
       "SECONDS");
-  verb->add_option("--config", options.config, "the daemon's config")->required();
+  verb->add_option("--config", options.config, "the daemon's config; needed unless --replay is given");
   verb->add_option("--scene", options.scene, "the scene, instead of the config's");
-  verb->add_option("--duration", options.duration, "runs every tick with n / rate up to it")
-      ->required()
+  verb->add_option("--duration", options.duration,
+                   "runs every tick with n / rate up to it; needed unless --replay is given")
       ->check(not_negative);
   verb->add_option("--hips-csv", options.csv.hips,
                    "each HIP in each object that holds it, forces before the guard");
@@ -78,11 +106,13 @@ void add_simulate(CLI::App& app, haptic::simulate::SimulateOptions& options, Act
   verb->add_option("--devices-csv", options.csv.devices, "poses of devices, and the forces behind the guard");
   verb->add_option("--record", options.recording, "all of it as an MCAP file, as hapticctl record makes one");
   verb->add_flag("--verbose", options.verbose, "the summary tells the transitions of the constraint, too");
-  verb->callback([&] {
-    action = [&] {
-      haptic::simulate::simulate(options, std::cerr);
-      return kDone;
-    };
+  verb->add_option("--replay", choice.replay.file,
+                   "instead of all this, runs a recording again and compares every tick with it, to the bit: "
+                   "exit code 1 if one differs");
+  verb->add_flag("--json", choice.replay.json, "with --replay: one JSON object instead of text");
+  verb->callback([&choice, &action, verb] {
+    check_choice(*verb);
+    action = [&choice] { return simulate(choice); };
   });
 }
 
@@ -90,7 +120,7 @@ void add_simulate(CLI::App& app, haptic::simulate::SimulateOptions& options, Act
 int run_verb(int argc, char** argv) {
   haptic::RunOptions run;
   haptic::load::CheckOptions check;
-  haptic::simulate::SimulateOptions simulate;
+  SimulateChoice simulate_choice;
   Action action;
 
   CLI::App app("Real-time haptics daemon", "hapticd");
@@ -99,7 +129,7 @@ int run_verb(int argc, char** argv) {
   app.footer("Exit codes: 0 done, 1 failed, 64 usage.");
   add_run(app, run, action);
   add_check(app, check, action);
-  add_simulate(app, simulate, action);
+  add_simulate(app, simulate_choice, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

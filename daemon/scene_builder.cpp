@@ -14,6 +14,22 @@ namespace haptic {
 
 namespace {
 
+v1::SceneDescription::Carry describe(const servo::Carry& carry) {
+  v1::SceneDescription::Carry told;
+  told.set_from_revision(carry.from_revision);
+  for (const engine::CarriedObject& object : carry.map.objects) {
+    v1::SceneDescription::Carry::Object& item = *told.add_object();
+    if (object.from != engine::kNone) item.set_from(object.from);
+    item.set_motion(object.motion);
+    item.set_contacts(object.contacts);
+  }
+  for (const engine::Index from : carry.map.fingers) {
+    v1::SceneDescription::Carry::Part& item = *told.add_finger();
+    if (from != engine::kNone) item.set_from(from);
+  }
+  return told;
+}
+
 v1::Error to_wire(const load::LoadError& error) {
   v1::Error wire;
   wire.set_code(v1::Error::INVALID);
@@ -67,6 +83,7 @@ ipc::BuiltScene SceneBuilder::from_edit(const v1::EditScene& request,
         .from_revision = running.revision,
         .map = engine::make_carry_map(*running.scene, built.prepared->world.scene(),
                                       load::origins(edited.objects), load::origins(edited.fingers))};
+    *built.description.mutable_carry() = describe(*built.prepared->carry);
     return built;
   } catch (const load::LoadError& error) {
     throw ipc::SceneError(to_wire(error));

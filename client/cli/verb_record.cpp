@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "client/cli/describe.h"
+#include "client/cli/inputs_recorder.h"
 #include "client/cli/look.h"
 #include "client/cli/screen.h"
 #include "client/cli/verbs.h"
@@ -29,6 +30,7 @@ struct RecordOptions {
   double seconds = 0.0;  // 0: until stopped
   bool replace = false;
   bool no_viewers = false;
+  bool no_inputs = false;
 };
 
 // what has come in
@@ -69,6 +71,9 @@ class Recorder {
     }
     if (!stop_requested()) {
       daemon_.unsubscribe(subscription_);  // a script goes on with this connection
+      if (inputs_) {
+        inputs_->end();
+      }
     }
     return kDone;
   }
@@ -81,11 +86,34 @@ class Recorder {
                                               .rate_hz = status.status().rate_hz(),
                                               .decimation = options_.decimation,
                                               .viewers = !options_.no_viewers});
+    begin_inputs();
     v1::Subscribe wish;
     wish.mutable_topic()->Assign(options_.topics.begin(), options_.topics.end());
     wish.set_decimation(options_.decimation);
     wish.set_delivery(v1::LOSSLESS);
     subscription_ = daemon_.subscribe(wish);
+  }
+
+  // a recording that cannot be replayed is still worth having
+  void begin_inputs() {
+    if (options_.no_inputs) {
+      not_replayable_ = "--no-inputs";
+      return;
+    }
+    inputs_.emplace(daemon_, *writer_);
+    or_without_inputs([this] { inputs_->begin(); });
+  }
+
+  template <class Do>
+  void or_without_inputs(Do action) {
+    try {
+      action();
+    } catch (const client::Unreachable&) {
+      throw;
+    } catch (const client::Error& error) {
+      not_replayable_ = error.what();
+      inputs_.reset();
+    }
   }
 
   void record() {
@@ -109,11 +137,18 @@ class Recorder {
   }
 
   void take(const v1::Envelope& message) {
+    bool taken = false;
+    if (inputs_) {
+      or_without_inputs([&] { taken = inputs_->take(message); });
+    }
+    if (taken) {
+      return;
+    }
     if (message.has_frame() && message.frame().subscription() == subscription_) {
       const v1::Frame& frame = message.frame();
       time_ = frame.realtime_ns();
       if (!scene_revision_ || frame.scene_revision() > *scene_revision_) {
-        write_scene();
+        write_scene(frame.scene_revision());
       }
       writer_->write(frame);
       ++counts_.frames;
@@ -125,15 +160,21 @@ class Recorder {
   }
 
   // before the first frame that it is for; frames that come meanwhile wait
-  void write_scene() {
-    const v1::Response scene = call(daemon_, [](v1::Request& request) { request.mutable_get_scene(); });
+  void write_scene(std::uint64_t revision) {
     if (!scene_revision_) {
       const v1::Response devices =
           call(daemon_, [](v1::Request& request) { request.mutable_list_devices(); });
       writer_->write(devices.devices(), time_);
     }
-    writer_->write(scene.scene(), time_);
-    scene_revision_ = scene.scene().revision();
+    if (inputs_) {
+      scene_revision_ = revision;
+      or_without_inputs([&] { inputs_->write_scene(revision, time_); });
+    }
+    if (!inputs_) {
+      const v1::Response scene = call(daemon_, [](v1::Request& request) { request.mutable_get_scene(); });
+      writer_->write(scene.scene(), time_);
+      scene_revision_ = scene.scene().revision();
+    }
   }
 
   void end() {
@@ -174,6 +215,8 @@ class Recorder {
       fields["bytes"] = json(static_cast<double>(writer.size()));
       fields["gaps"] = json(static_cast<double>(counts_.gaps));
       fields["lost_frames"] = json(static_cast<double>(counts_.lost));
+      fields["replayable"].set_bool_value(not_replayable_.empty());
+      fields["lost_inputs"] = json(static_cast<double>(inputs_ ? inputs_->lost() : 0));
       print_json(result);
       return;
     }
@@ -182,6 +225,12 @@ class Recorder {
                counts_.lost == 0 ? "none is lost"
                                  : fmt::format("{} lost in {}", count_of(counts_.lost, "frame"),
                                                count_of(counts_.gaps, "gap")));
+    if (!not_replayable_.empty()) {
+      fmt::print("it cannot be replayed to the bit: {}\n", not_replayable_);
+    } else if (inputs_ && inputs_->lost() > 0) {
+      fmt::print("the inputs of {} are lost, and the replay goes on after them\n",
+                 count_of(inputs_->lost(), "tick"));
+    }
     std::fflush(stdout);
   }
 
@@ -191,6 +240,8 @@ class Recorder {
   client::Connection& daemon_;
   FileSink sink_;
   std::optional<recording::SessionWriter> writer_;
+  std::optional<InputsRecorder> inputs_;
+  std::string not_replayable_;  // why; empty: it is
   std::uint32_t subscription_ = 0;
   std::optional<std::uint64_t> scene_revision_;
   std::uint64_t time_ = 0;  // of the newest frame, ns
@@ -222,6 +273,8 @@ void add_record(CLI::App& app, Command& command) {
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   verb->add_flag("--replace", options->replace, "the file may be there already; it is lost then");
+  verb->add_flag("--no-inputs", options->no_inputs,
+                 "without the inputs of each tick, the state and the meshes; it cannot be replayed then");
   verb->add_flag("--no-viewers", options->no_viewers, "without the topics that are for viewers alone");
 }
 

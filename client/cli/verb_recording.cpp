@@ -1,6 +1,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -27,6 +28,9 @@ struct Contents {
   std::vector<v1::SceneDescription> scenes;
   std::uint64_t gaps = 0;
   std::uint64_t lost_frames = 0;
+  std::uint64_t states = 0;  // from which a replay can start
+  v1::Gap lost_inputs;       // the first gap in what a replay needs
+  bool has_lost_inputs = false;
 };
 
 Contents contents_of(const Recording& recording) {
@@ -39,8 +43,29 @@ Contents contents_of(const Recording& recording) {
     messages.parse(gap);
     ++contents.gaps;
     contents.lost_frames += gap.last_sequence() - gap.first_sequence() + 1;
+    const bool is_of_inputs =
+        std::find(gap.topic().begin(), gap.topic().end(), v1::INPUTS) != gap.topic().end();
+    if (is_of_inputs && !contents.has_lost_inputs) {
+      contents.lost_inputs = gap;
+      contents.has_lost_inputs = true;
+    }
+  }
+  for (auto messages = recording.messages({.topics = {recording::kStateTopic}}); messages.next();) {
+    ++contents.states;
   }
   return contents;
+}
+
+// whether hapticctl replay can do something with it
+std::string replay_of(const Contents& contents) {
+  if (contents.states == 0) {
+    return "no: it has no state to start from";
+  }
+  if (!contents.has_lost_inputs) {
+    return "yes";
+  }
+  return fmt::format("with gaps, the first at ticks {} to {}", contents.lost_inputs.first_tick(),
+                     contents.lost_inputs.last_tick());
 }
 
 double seconds_of(const recording::Statistics& statistics) {
@@ -84,6 +109,7 @@ void print_info_json(const std::string& file, std::uint64_t size, const Recordin
   fields["chunks"] = json(static_cast<double>(statistics.chunk_count));
   fields["gaps"] = json(static_cast<double>(contents.gaps));
   fields["lost_frames"] = json(static_cast<double>(contents.lost_frames));
+  fields["replay"] = json(replay_of(contents));
   auto& channels = *fields["channels"].mutable_list_value();
   for (const auto& [id, channel] : recording.channels()) {
     auto& told = *channels.add_values()->mutable_struct_value()->mutable_fields();
@@ -134,6 +160,7 @@ void print_info(std::uint64_t size, const Recording& recording, const recording:
   line("gaps", contents.gaps == 0
                    ? "none"
                    : fmt::format("{}: {} lost", contents.gaps, count_of(contents.lost_frames, "frame")));
+  line("replay", replay_of(contents));
   for (const recording::AttachmentIndex& attachment : recording.attachments()) {
     line("attachment", attachment.name + ", " + bytes(attachment.data_size));
   }

@@ -19,6 +19,7 @@ void add_verbs(CLI::App& app, Command& command) {
   add_record(app, command);
   add_recording(app, command);
   add_export(app, command);
+  add_replay(app, command);
   add_arm(app, command);
   add_lease(app, command);
   add_pause(app, command);

@@ -27,6 +27,7 @@ void add_stats(CLI::App& app, Command& command);
 void add_record(CLI::App& app, Command& command);
 void add_recording(CLI::App& app, Command& command);  // info, recover
 void add_export(CLI::App& app, Command& command);
+void add_replay(CLI::App& app, Command& command);
 void add_certificates(CLI::App& app, Command& command);
 void add_plot(CLI::App& app, Command& command);
 

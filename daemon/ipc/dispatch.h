@@ -20,11 +20,12 @@ namespace haptic::ipc {
 struct Caller {
   ClientId id = 0;
   v1::Role role = v1::ROLE_UNSPECIFIED;
-  std::string name;                                // for others to read
-  std::string program;                             // that it calls itself, fit to be printed
-  std::size_t subscriptions = 16;                  // that it can have
-  FrameSink sink;                                  // for its subscriptions
-  std::function<void(std::uint32_t)> drop_frames;  // of a subscription that has ended
+  std::string name;                                  // for others to read
+  std::string program;                               // that it calls itself, fit to be printed
+  std::size_t subscriptions = 16;                    // that it can have
+  std::size_t answer_bytes = std::size_t{4} << 20U;  // the largest answer that can be sent to it
+  FrameSink sink;                                    // for its subscriptions
+  std::function<void(std::uint32_t)> drop_frames;    // of a subscription that has ended
 };
 
 /// What handlers work with.

@@ -110,6 +110,41 @@ void fill_devices(const servo::Snapshot& snapshot, v1::DevicesFrame& out) {
   }
 }
 
+v1::InputsFrame::Kind to_wire(servo::CommandKind kind) noexcept {
+  switch (kind) {
+    case servo::CommandKind::kPause:
+      return v1::InputsFrame::PAUSE;
+    case servo::CommandKind::kResume:
+      return v1::InputsFrame::RESUME;
+    case servo::CommandKind::kStep:
+      return v1::InputsFrame::STEP;
+    case servo::CommandKind::kReset:
+      return v1::InputsFrame::RESET;
+    case servo::CommandKind::kSwapScene:
+      return v1::InputsFrame::SCENE;
+    default:
+      return v1::InputsFrame::KIND_UNSPECIFIED;
+  }
+}
+
+void fill_inputs(const servo::Snapshot& snapshot, v1::InputsFrame& out) {
+  for (const servo::DeviceSnapshot& device : snapshot.devices) {
+    add(*out.mutable_position(), device.position);
+    add(*out.mutable_orientation(), device.orientation);
+    add(*out.mutable_velocity(), device.velocity);
+    out.add_present(device.present);
+  }
+  const servo::TickInputs& inputs = snapshot.inputs;
+  out.set_missed(inputs.missed);
+  for (std::size_t i = 0; i < inputs.command_count; ++i) {
+    v1::InputsFrame::Command& command = *out.add_command();
+    command.set_kind(to_wire(inputs.commands[i].kind));
+    command.set_ticks(inputs.commands[i].ticks);
+    command.set_scene_revision(inputs.commands[i].revision);
+  }
+  out.set_state_hash(inputs.state_hash);
+}
+
 std::int64_t nanoseconds_of(clockid_t clock) noexcept {
   timespec now{};
   ::clock_gettime(clock, &now);
@@ -149,6 +184,9 @@ void fill_frame(const servo::Snapshot& snapshot, TopicSet topics, const Selectio
   }
   if ((topics & topic_bit(v1::DEVICES)) != 0) {
     fill_devices(snapshot, *frame.mutable_devices());
+  }
+  if ((topics & topic_bit(v1::INPUTS)) != 0) {
+    fill_inputs(snapshot, *frame.mutable_inputs());
   }
 }
 

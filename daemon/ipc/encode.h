@@ -26,7 +26,8 @@ using TopicSet = std::uint32_t;
 inline constexpr TopicSet topic_bit(v1::Topic topic) noexcept { return TopicSet{1} << topic; }
 
 /// The topics that a frame tells of each tick.
-inline constexpr TopicSet kTickTopics = topic_bit(v1::OBJECTS) | topic_bit(v1::HIPS) | topic_bit(v1::DEVICES);
+inline constexpr TopicSet kTickTopics =
+    topic_bit(v1::OBJECTS) | topic_bit(v1::HIPS) | topic_bit(v1::DEVICES) | topic_bit(v1::INPUTS);
 
 /// What a frame of these topics says beside sequence and subscription. `realtime_offset_ns` is CLOCK_REALTIME
 /// - CLOCK_MONOTONIC.

@@ -2,11 +2,8 @@
 
 namespace haptic::ipc {
 
-void handle_get_scene(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
-                      const Reply& reply) {
-  v1::Response response;
-  *response.mutable_scene() = desk.scenes.current();
-  reply.send(std::move(response));
+void handle_get_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply) {
+  desk.scenes.describe(request.get_scene(), caller.answer_bytes, reply);
 }
 
 void handle_load_scene(Desk& desk, const Caller& /*caller*/, const v1::Request& request, const Reply& reply) {

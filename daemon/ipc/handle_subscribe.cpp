@@ -10,7 +10,7 @@ namespace {
 // a client that names more wants all
 constexpr int kNames = 1024;
 
-constexpr const char* kTopicNames = "OBJECTS, HIPS, DEVICES, EVENTS, STATS";
+constexpr const char* kTopicNames = "OBJECTS, HIPS, DEVICES, EVENTS, STATS, INPUTS";
 
 v1::Error wrong(v1::Error::Code code, const std::string& field, const std::string& message) {
   v1::Error error = make_error(code, message);

@@ -16,6 +16,8 @@ void handle_list_devices(Desk& desk, const Caller& caller, const v1::Request& re
 void handle_get_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 void handle_load_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 void handle_edit_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+// handle_state.cpp
+void handle_get_state(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_servo.cpp: what the servo thread does itself
 void handle_servo_command(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 void handle_arm(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);

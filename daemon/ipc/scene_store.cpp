@@ -1,15 +1,39 @@
 #include "ipc/scene_store.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "load/embedded_mesh.h"
+
 namespace haptic::ipc {
+
+namespace {
+
+// for who records all scenes, while one is loaded after the other
+constexpr std::size_t kScenesKept = 8;
+
+// of the meshes that come from files, as they are embedded
+std::size_t mesh_bytes(const v1::SceneDescription& description) {
+  constexpr std::size_t kVertexBytes = 3 * sizeof(double);
+  constexpr std::size_t kCellBytes = 4 * 3 + 1;  // numbers of vertices of some three bytes, and a tag
+  std::size_t bytes = 0;
+  for (int i = 0; i < description.object_size() && i < description.scene().object_size(); ++i) {
+    if (!description.scene().object(i).shape().has_mesh()) {
+      continue;
+    }
+    bytes += description.object(i).vertices() * kVertexBytes + description.object(i).cells() * kCellBytes;
+  }
+  return bytes;
+}
+
+}  // namespace
 
 SceneStore::SceneStore(Services& services, ServoLink& servo)
     : services_(services),
       servo_(servo),
       current_(services.scene),
-      running_(services.running),
+      running_(services.running ? services.running : std::make_shared<const engine::Scene>()),
       last_revision_(services.scene.revision()) {}
 
 void SceneStore::load(const v1::LoadScene& request, Reply reply) {
@@ -93,8 +117,49 @@ void SceneStore::swap(BuiltScene built, SteadyClock::time_point now) {
   next_ = std::move(built.description);
 }
 
+void SceneStore::describe(const v1::GetScene& request, std::size_t most_bytes, const Reply& reply) const {
+  const v1::SceneDescription* description = &current_;
+  const engine::Scene* scene = running_.get();
+  if (request.revision() != 0 && request.revision() != current_.revision()) {
+    const auto kept = std::find_if(before_.begin(), before_.end(), [&](const Kept& entry) {
+      return entry.description.revision() == request.revision();
+    });
+    if (kept == before_.end()) {
+      reply.fail(v1::Error::NOT_FOUND,
+                 "revision " + std::to_string(request.revision()) + " of the scene is not kept");
+      return;
+    }
+    description = &kept->description;
+    scene = kept->scene.get();
+  }
+  v1::Response response;
+  *response.mutable_scene() = *description;
+  if (request.embed_meshes()) {
+    const std::size_t bytes = mesh_bytes(*description);
+    if (bytes > most_bytes) {
+      reply.fail(v1::Error::INVALID, "the meshes of the scene take about " + std::to_string(bytes) +
+                                         " bytes, and an answer may have " + std::to_string(most_bytes) +
+                                         " (limits.pending_control of the config)");
+      return;
+    }
+    load::embed_meshes(*response.mutable_scene()->mutable_scene(), *scene);
+  }
+  reply.send(std::move(response));
+}
+
+void SceneStore::keep_scenes(bool keep) {
+  keeps_scenes_ = keep;
+  if (!keep) {
+    before_.clear();
+  }
+}
+
 void SceneStore::swapped(bool done) {
   if (done && next_) {
+    if (keeps_scenes_) {
+      before_.push_front({std::move(current_), std::move(running_)});
+      before_.resize(std::min(before_.size(), kScenesKept));
+    }
     current_ = std::move(*next_);
     running_ = std::move(next_running_);
   }

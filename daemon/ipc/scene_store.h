@@ -6,6 +6,7 @@
 //
 // One at a time. io thread, which never waits for the building.
 
+#include <deque>
 #include <functional>
 #include <future>
 #include <memory>
@@ -23,6 +24,13 @@ class SceneStore {
 
   const v1::SceneDescription& current() const noexcept { return current_; }
 
+  /// The scene that runs, as it was built.
+  const engine::Scene& running() const noexcept { return *running_; }
+
+  /// Answers with a scene that runs or has run and is still kept; `most_bytes` is how large the answer may
+  /// be.
+  void describe(const v1::GetScene& request, std::size_t most_bytes, const Reply& reply) const;
+
   /// Replies when the scene runs, or why it does not.
   void load(const v1::LoadScene& request, Reply reply);
 
@@ -35,7 +43,15 @@ class SceneStore {
   /// The servo thread has answered the swap.
   void swapped(bool done);
 
+  /// Whether somebody may still ask for scenes that have run.
+  void keep_scenes(bool keep);
+
  private:
+  struct Kept {
+    v1::SceneDescription description;
+    std::shared_ptr<const engine::Scene> scene;
+  };
+
   bool is_busy(const Reply& reply) const;
   void build(std::function<BuiltScene()> make, Reply reply);
   void swap(BuiltScene built, SteadyClock::time_point now);
@@ -44,6 +60,8 @@ class SceneStore {
   ServoLink& servo_;
   v1::SceneDescription current_;
   std::shared_ptr<const engine::Scene> running_;  // what was built of it
+  bool keeps_scenes_ = false;
+  std::deque<Kept> before_;  // scenes that have run, the newest first; only while they are kept
   std::uint64_t last_revision_;
   std::optional<Reply> reply_;  // of the load or edit at hand
   std::future<BuiltScene> building_;

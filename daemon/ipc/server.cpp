@@ -204,6 +204,7 @@ class Server::Impl {
 
   void poll() {
     const auto now = SteadyClock::now();
+    scenes_.keep_scenes(publisher_.has_subscription_for(v1::INPUTS));
     servo_.poll(now);
     scenes_.poll(now);
     announcer_.poll(now);

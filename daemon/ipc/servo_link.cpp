@@ -31,12 +31,30 @@ ServoLink::ServoLink(servo::Mailbox& mailbox, std::chrono::milliseconds patience
 
 bool ServoLink::submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer,
                        std::chrono::milliseconds takes) {
+  return send(command, now + patience_ + takes,
+              [on_answer = std::move(on_answer)](Outcome outcome, const servo::Event* /*answer*/) {
+                on_answer(outcome);
+              });
+}
+
+bool ServoLink::submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time_point now, OnCopy on_copy) {
+  servo::Command command;
+  command.kind = servo::CommandKind::kCopyState;
+  command.copy = copy.get();
+  if (!send(command, now + patience_, std::move(on_copy))) {
+    return false;
+  }
+  static_cast<void>(copy.release());  // the command holds it
+  return true;
+}
+
+bool ServoLink::send(servo::Command command, SteadyClock::time_point deadline, OnCopy on_answer) {
   command.request = last_request_ + 1;
   if (!mailbox_.commands.push(command)) {
     return false;
   }
   ++last_request_;
-  pending_.emplace(last_request_, Pending{now + patience_ + takes, std::move(on_answer)});
+  pending_.emplace(last_request_, Pending{deadline, std::move(on_answer)});
   return true;
 }
 
@@ -50,9 +68,9 @@ void ServoLink::poll(SteadyClock::time_point now) {
       ++entry;
       continue;
     }
-    const OnAnswer on_answer = std::move(entry->second.on_answer);
+    const OnCopy on_answer = std::move(entry->second.on_answer);
     entry = pending_.erase(entry);
-    on_answer(Outcome::kNoAnswer);
+    on_answer(Outcome::kNoAnswer, nullptr);
   }
 }
 
@@ -61,15 +79,16 @@ void ServoLink::take(const servo::Event& event) {
     const std::unique_ptr<servo::PreparedScene> retired(event.scene);
     return;
   }
+  const std::unique_ptr<servo::StateCopy> copy(event.copy);
   on_event_(event);
   if (!is_answer(event.kind)) {
     return;
   }
   const auto found = pending_.find(event.request);
   if (found != pending_.end()) {
-    const OnAnswer on_answer = std::move(found->second.on_answer);
+    const OnCopy on_answer = std::move(found->second.on_answer);
     pending_.erase(found);
-    on_answer(outcome_of(event.kind));
+    on_answer(outcome_of(event.kind), &event);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 
 #include "servo/mailbox.h"
 
@@ -18,6 +19,8 @@ enum class Outcome { kDone, kNothingToDo, kFaultRefused, kOutdated, kNoAnswer };
 class ServoLink {
  public:
   using OnAnswer = std::function<void(Outcome)>;
+  /// `answer` is nullptr if there was none.
+  using OnCopy = std::function<void(Outcome, const servo::Event* answer)>;
   using OnEvent = std::function<void(const servo::Event&)>;
 
   /// `on_event` sees every event but kSceneRetired, answers too, and before the one who asked does.
@@ -29,14 +32,20 @@ class ServoLink {
   bool submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer,
               std::chrono::milliseconds takes = std::chrono::milliseconds(0));
 
+  /// Sends kCopyState with `copy` as its buffer, as submit() does. The answer's buffer is the one who asked's
+  /// to read until `on_copy` returns.
+  bool submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time_point now, OnCopy on_copy);
+
   /// Takes what the servo thread has sent. To be called every few milliseconds.
   void poll(SteadyClock::time_point now);
 
  private:
   struct Pending {
     SteadyClock::time_point deadline;
-    OnAnswer on_answer;
+    OnCopy on_answer;
   };
+
+  bool send(servo::Command command, SteadyClock::time_point deadline, OnCopy on_answer);
 
   void take(const servo::Event& event);
 

@@ -48,6 +48,7 @@ Session::Session(ClientId id, std::shared_ptr<Stream> stream, Peer peer, const S
   caller_.role = peer_.role.value_or(v1::ROLE_UNSPECIFIED);
   caller_.name = peer_.name;
   caller_.subscriptions = limits.subscriptions;
+  caller_.answer_bytes = limits.outbox.control_bytes;
 }
 
 void Session::start() {
@@ -176,6 +177,16 @@ void Session::take_request(const v1::Request& request) {
     --self->open_requests_;
     v1::Envelope envelope;
     *envelope.mutable_response() = std::move(response);
+    const std::size_t bytes = envelope.ByteSizeLong();
+    if (bytes > self->caller_.answer_bytes) {
+      const std::uint64_t id = envelope.response().id();
+      envelope.mutable_response()->Clear();
+      envelope.mutable_response()->set_id(id);
+      *envelope.mutable_response()->mutable_error() = make_error(
+          v1::Error::INVALID, "the answer has " + std::to_string(bytes) +
+                                  " bytes, more than can be sent to you (limits.pending_control of "
+                                  "the config)");
+    }
     self->push_control(envelope);
   });
   if (!is_within_limits(request, reply)) return;

@@ -124,8 +124,12 @@ class Editor {
  private:
   static constexpr const char* kNoFiles = "is refused: a scene that is sent cannot name files";
 
+  static bool names_a_file(const v1::Object& object) {
+    return object.shape().has_mesh() && !object.shape().mesh().has_embedded();
+  }
+
   void add_object(const std::string& field, const v1::Object& object) {
-    if (object.shape().has_mesh()) fail(field + ".shape.mesh.path", kNoFiles);
+    if (names_a_file(object)) fail(field + ".shape.mesh.path", kNoFiles);
     objects_.add(field, object);
   }
 
@@ -150,7 +154,7 @@ class Editor {
       part.pose.clear();
     }
     part.edit = field + ".object";
-    if (object.shape().has_mesh() && object.shape().SerializeAsString() != shape) {
+    if (names_a_file(object) && object.shape().SerializeAsString() != shape) {
       fail(field + ".object.shape.mesh", kNoFiles);
     }
   }

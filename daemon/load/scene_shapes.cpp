@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/shapes.h"
+#include "load/embedded_mesh.h"
 #include "load/mesh_file.h"
 #include "load/ranges.h"
 #include "load/read_file.h"
@@ -68,6 +69,17 @@ LoadedMesh read_mesh_of(const TextSource& source, const std::string& field,
   }
 }
 
+engine::CellComplex cells_of_message(const TextSource& source, const std::string& field,
+                                     const v1::Shape::Tetrahedra& message) {
+  const engine::TetraMesh mesh = mesh_of(source, field, message, kMostCells);
+  try {
+    return engine::CellComplex::build(mesh);
+  } catch (const engine::MeshError& error) {
+    source.fail(error.cell == engine::kNone ? field : field + "." + item("tag", static_cast<int>(error.cell)),
+                error.what());
+  }
+}
+
 engine::CellComplex cells_of_file(const TextSource& source, const std::string& field,
                                   const v1::Shape::Mesh& mesh, const std::filesystem::path* file,
                                   std::vector<std::string>& warnings) {
@@ -111,6 +123,9 @@ engine::CellComplex cells_of_file(const TextSource& source, const std::string& f
 engine::CellComplex make_cells(const TextSource& source, const std::string& field, const v1::Shape& shape,
                                double air_margin, const std::filesystem::path* file,
                                std::vector<std::string>& warnings) {
+  if (shape.mesh().has_embedded()) {
+    return cells_of_message(source, field + ".mesh.embedded", shape.mesh().embedded());
+  }
   if (shape.has_mesh()) return cells_of_file(source, field + ".mesh", shape.mesh(), file, warnings);
   // what the ranges cannot tell - an outline that crosses itself, a margin too thin to be cut into cells -
   // the engine finds

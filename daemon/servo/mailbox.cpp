@@ -61,8 +61,14 @@ const Snapshot* SnapshotRing::take() noexcept {
 }
 
 Mailbox::~Mailbox() {
-  commands.consume_all([](const Command& command) { delete command.scene; });
-  events.consume_all([](const Event& event) { delete event.scene; });
+  commands.consume_all([](const Command& command) {
+    delete command.scene;
+    delete command.copy;
+  });
+  events.consume_all([](const Event& event) {
+    delete event.scene;
+    delete event.copy;
+  });
 }
 
 }  // namespace haptic::servo

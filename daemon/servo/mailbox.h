@@ -41,6 +41,15 @@ struct PreparedScene {
   std::optional<Carry> carry = std::nullopt;     // of an edited scene; none: it starts at its tick 0
 };
 
+/// A copy of what a tick changes: with the inputs of all later ticks it gives their states again. Made by
+/// copy_buffer() off the servo thread, which only fills it.
+struct StateCopy {
+  std::uint64_t revision = 0;  // of the scene that it is for
+  engine::State state;         // after the tick of the answer
+  bool paused = false;
+  std::uint64_t steps_left = 0;  // while paused
+};
+
 enum class CommandKind : std::uint8_t {
   kArm,
   kDisarm,
@@ -52,6 +61,7 @@ enum class CommandKind : std::uint8_t {
   kSwapScene,  // `scene` becomes the one that runs; the one that does not comes back in kSceneRetired
   kResetStats,
   kLatchFault,  // `fault`, while armed: forces go down by the slew limit, and it is latched
+  kCopyState,   // into `copy`, at the end of the tick; kOutdated if that is for another scene
 };
 
 struct Command {
@@ -60,6 +70,7 @@ struct Command {
   std::uint64_t ticks = 0;         // kStep
   PreparedScene* scene = nullptr;  // kSwapScene: never null; owned by whoever holds the command
   safety::Fault fault{};           // kLatchFault; its tick is set when it is latched
+  StateCopy* copy = nullptr;       // kCopyState: never null; comes back in the answer
 };
 
 enum class EventKind : std::uint8_t {
@@ -80,6 +91,25 @@ struct Event {
   std::uint64_t count = 0;
   safety::Fault fault{};  // the latched one, if any
   PreparedScene* scene = nullptr;
+  StateCopy* copy = nullptr;  // of the answer to kCopyState: the receiver's to free
+};
+
+/// Commands that one tick takes at most; others wait for the next.
+inline constexpr std::size_t kCommandsPerTick = 8;
+
+/// A command that changed what is simulated.
+struct AppliedCommand {
+  CommandKind kind = CommandKind::kPause;  // kPause, kResume, kStep, kReset or kSwapScene
+  std::uint64_t ticks = 0;                 // kStep
+  std::uint64_t revision = 0;              // kSwapScene: of the scene that runs since then
+};
+
+/// With what the devices measured, all that one tick's state follows from.
+struct TickInputs {
+  std::uint64_t missed = 0;                                 // periods slept through just before the tick
+  std::array<AppliedCommand, kCommandsPerTick> commands{};  // in the order in which they were obeyed
+  std::size_t command_count = 0;
+  std::uint64_t state_hash = 0;  // engine::hash after the tick
 };
 
 struct ObjectSnapshot {
@@ -128,6 +158,7 @@ struct Snapshot {
   bool armed = false;
   bool paused = false;
   std::uint64_t missed_ticks = 0;
+  TickInputs inputs;
   std::vector<ObjectSnapshot> objects;
   std::vector<HipSnapshot> hips;
   std::vector<ContactSnapshot> contacts;
@@ -196,7 +227,7 @@ struct LoopStats {
 
 struct Mailbox {
   explicit Mailbox(const Capacity& capacity) : snapshots(capacity) {}
-  /// Frees the scenes that are still in the queues. After both threads have ended.
+  /// Frees the scenes and copies that are still in the queues. After both threads have ended.
   ~Mailbox();
 
   boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<256>> commands;

@@ -20,4 +20,9 @@ std::unique_ptr<PreparedScene> prepare_scene(std::shared_ptr<const engine::Scene
                                                           .finger_poses = std::move(poses)});
 }
 
+std::unique_ptr<StateCopy> copy_buffer(const engine::Scene& scene, std::uint64_t revision) {
+  return std::unique_ptr<StateCopy>(
+      new StateCopy{.revision = revision, .state = engine::initial_state(scene)});
+}
+
 }  // namespace haptic::servo

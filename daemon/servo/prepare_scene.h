@@ -15,4 +15,7 @@ namespace haptic::servo {
 std::unique_ptr<PreparedScene> prepare_scene(std::shared_ptr<const engine::Scene> scene,
                                              std::uint64_t revision, std::span<const std::string> devices);
 
+/// A buffer for kCopyState that fits the states of `scene`. Not real-time safe.
+std::unique_ptr<StateCopy> copy_buffer(const engine::Scene& scene, std::uint64_t revision);
+
 }  // namespace haptic::servo

@@ -40,7 +40,9 @@ ServoLoop::ServoLoop(const ServoSettings& settings, std::span<drivers::Device* c
       force_lifetime_(static_cast<drivers::Nanoseconds>(
           std::max(kShortestForceLifetime, kForceLifetimeTicks / settings.rate_hz) * 1e9)),
       scene_(std::move(scene)),
-      mailbox_(mailbox) {
+      mailbox_(mailbox),
+      paused_(settings.paused_from_start),
+      steps_left_(settings.steps_from_start) {
   for (drivers::Device* const device : devices) {
     safety::GuardLimits limits = settings.limits;
     limits.max_force = std::min(limits.max_force, device->info().max_force);
@@ -69,6 +71,7 @@ void ServoLoop::tick(const Instant& now) noexcept {
   finish_stage(Stage::kWrite);
   publish(now);
   finish_step(now);
+  finish_copy(now);
   finish_stage(Stage::kPublish);
   publish_stats(now);
 }
@@ -86,6 +89,8 @@ bool ServoLoop::is_at_rest() const noexcept {
 }
 
 void ServoLoop::count_misses(const Instant& now) noexcept {
+  inputs_.missed = now.missed;
+  inputs_.command_count = 0;
   missed_ticks_ += now.missed;
   stats_.missed_ticks += now.missed;
   stats_.wakeup.record(now.lateness_ns);
@@ -189,6 +194,8 @@ void ServoLoop::send(Event event, const Instant& now) noexcept {
 }
 
 void ServoLoop::publish(const Instant& now) noexcept {
+  // always: no client can make a tick take longer
+  inputs_.state_hash = engine::hash(scene_->world.state());
   fill(mailbox_.snapshots.writable(), now);
   mailbox_.snapshots.publish();
 }
@@ -202,6 +209,7 @@ void ServoLoop::fill(Snapshot& snapshot, const Instant& now) const noexcept {
   snapshot.armed = armed_;
   snapshot.paused = paused_;
   snapshot.missed_ticks = missed_ticks_;
+  snapshot.inputs = inputs_;
   snapshot.dropped_contacts = 0;
 
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {

@@ -27,6 +27,8 @@ struct ServoSettings {
   safety::GuardLimits limits;
   std::uint32_t max_missed_ticks = 50;  // in a row, while armed
   bool armed_from_start = false;        // only `simulate`, where no hand is near
+  bool paused_from_start = false;       // only a replay that starts in the middle,
+  std::uint64_t steps_from_start = 0;   // and how many steps were left there
   engine::Clock clock = nullptr;        // for stage and transition times; none: nothing is timed
 };
 
@@ -86,6 +88,9 @@ class ServoLoop {
   void begin_step(const Command& command) noexcept;
   void finish_step(const Instant& now) noexcept;
   void answer_step(const Instant& now) noexcept;
+  void begin_copy(const Command& command, const Instant& now) noexcept;
+  void finish_copy(const Instant& now) noexcept;
+  void note(const Command& command, EventKind answer) noexcept;
 
   void want_forces() noexcept;
   void latch(const safety::Fault& fault, const Instant& now) noexcept;
@@ -104,12 +109,16 @@ class ServoLoop {
   Mailbox& mailbox_;
 
   bool armed_ = false;
-  bool paused_ = false;
-  std::uint64_t steps_left_ = 0;  // while paused
+  bool paused_;
+  std::uint64_t steps_left_;  // while paused
   bool step_unanswered_ = false;
   std::uint64_t step_request_ = 0;  // to be answered when none is left
   safety::Fault fault_;
   bool cut_ = false;  // by a fault: no device gets any force
+
+  TickInputs inputs_;
+  std::unique_ptr<StateCopy> copy_;  // to be filled and handed back when the tick has run
+  std::uint64_t copy_request_ = 0;
 
   std::uint64_t ticks_run_ = 0;
   std::uint64_t missed_ticks_ = 0;

@@ -6,10 +6,9 @@ namespace haptic::servo {
 
 namespace {
 
-constexpr int kCommandsPerTick = 8;
-
 // a command is only taken when there is room for all that may come of it (its answer, and a retired scene,
-// a latched fault or the answer to a step), so that neither an answer nor memory to free is ever lost
+// a latched fault or the answer to a step), so that neither an answer nor memory to free is ever lost; a copy
+// waits until there is room for it
 constexpr std::size_t kEventsPerCommand = 2;
 
 constexpr std::uint64_t kForever = ~std::uint64_t{0};
@@ -18,7 +17,7 @@ constexpr std::uint64_t kForever = ~std::uint64_t{0};
 
 void ServoLoop::receive_commands(const Instant& now) noexcept {
   Command command;
-  for (int i = 0; i < kCommandsPerTick; ++i) {
+  for (std::size_t i = 0; i < kCommandsPerTick; ++i) {
     if (mailbox_.events.write_available() < kEventsPerCommand || !mailbox_.commands.pop(command)) return;
     obey(command, now);
   }
@@ -46,6 +45,7 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
         // of two steps that overlap the first is answered now, and both run
         if (step_unanswered_) answer_step(now);
         begin_step(command);
+        note(command, EventKind::kDone);
         return;
       }
       answer = EventKind::kNothingToDo;
@@ -67,7 +67,11 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
     case CommandKind::kLatchFault:
       answer = latch_gently(command.fault, now);
       break;
+    case CommandKind::kCopyState:
+      begin_copy(command, now);
+      return;
   }
+  note(command, answer);
   send({.kind = answer, .command = command.kind, .request = command.request, .fault = fault_}, now);
 }
 
@@ -142,6 +146,54 @@ void ServoLoop::finish_step(const Instant& now) noexcept {
 void ServoLoop::answer_step(const Instant& now) noexcept {
   step_unanswered_ = false;
   send({.kind = EventKind::kDone, .command = CommandKind::kStep, .request = step_request_}, now);
+}
+
+void ServoLoop::begin_copy(const Command& command, const Instant& now) noexcept {
+  if (copy_ == nullptr && command.copy->revision == scene_->revision) {
+    copy_.reset(command.copy);
+    copy_request_ = command.request;
+    return;
+  }
+  send({.kind = EventKind::kOutdated,
+        .command = CommandKind::kCopyState,
+        .request = command.request,
+        .copy = command.copy},
+       now);
+}
+
+void ServoLoop::finish_copy(const Instant& now) noexcept {
+  if (copy_ == nullptr || mailbox_.events.write_available() == 0) return;
+  // a scene that was swapped in meanwhile may be of other sizes, and then copying would allocate
+  const bool fits = copy_->revision == scene_->revision;
+  if (fits) {
+    copy_->state = scene_->world.state();
+    copy_->paused = paused_;
+    copy_->steps_left = steps_left_;
+  }
+  send({.kind = fits ? EventKind::kDone : EventKind::kOutdated,
+        .command = CommandKind::kCopyState,
+        .request = copy_request_,
+        .copy = copy_.release()},
+       now);
+}
+
+void ServoLoop::note(const Command& command, EventKind answer) noexcept {
+  if (answer != EventKind::kDone) return;
+  switch (command.kind) {
+    case CommandKind::kPause:
+    case CommandKind::kResume:
+    case CommandKind::kReset:
+      inputs_.commands[inputs_.command_count++] = {.kind = command.kind};
+      break;
+    case CommandKind::kStep:
+      inputs_.commands[inputs_.command_count++] = {.kind = command.kind, .ticks = command.ticks};
+      break;
+    case CommandKind::kSwapScene:
+      inputs_.commands[inputs_.command_count++] = {.kind = command.kind, .revision = scene_->revision};
+      break;
+    default:
+      break;  // about force, or about what is told
+  }
 }
 
 }  // namespace haptic::servo

@@ -102,6 +102,7 @@ void simulate(const SimulateOptions& options, std::ostream& summary) {
     const servo::Snapshot& snapshot = *mailbox->snapshots.take();
     csv.write(time_of(tick), loop.scene().world, snapshot, devices.names());
     if (recording) recording->write(snapshot);
+    if (recording && tick == 0) recording->write(loop.scene().world.state(), snapshot);
     tell_faults(*mailbox, settings.rate_hz, devices.names(), recording ? &*recording : nullptr,
                 schedule.due_ns(tick), summary);
   }

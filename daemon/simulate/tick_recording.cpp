@@ -3,6 +3,8 @@
 #include "ipc/convert.h"
 #include "ipc/encode.h"
 #include "load/describe_scene.h"
+#include "load/embedded_mesh.h"
+#include "load/state_message.h"
 #include "proto/csv/csv_file.h"
 #include "proto/recording/error.h"
 
@@ -44,7 +46,8 @@ void or_output_error(Do action) {
 }  // namespace
 
 TickRecording::TickRecording(const std::string& path, const load::LoadedScene& scene, double rate_hz,
-                             std::span<const std::string> devices) {
+                             std::span<const std::string> devices)
+    : rate_hz_(rate_hz) {
   using recording::FileSink;
   v1::DeviceList list;
   devices_.reserve(devices.size());
@@ -60,6 +63,7 @@ TickRecording::TickRecording(const std::string& path, const load::LoadedScene& s
                                    .rate_hz = rate_hz});
     v1::SceneDescription description = load::describe(scene);
     description.set_revision(1);
+    load::embed_meshes(*description.mutable_scene(), scene.scene);
     writer_->write(list, 0);
     writer_->write(description, 0, surfaces_of(scene));
   });
@@ -69,6 +73,16 @@ void TickRecording::write(const servo::Snapshot& snapshot) {
   ipc::fill_frame(snapshot, ipc::kTickTopics, ipc::Selection{}, 0, frame_);
   frame_.set_sequence(++sequence_);
   or_output_error([&] { writer_->write(frame_); });
+}
+
+void TickRecording::write(const engine::State& state, const servo::Snapshot& snapshot) {
+  v1::WorldState message;
+  message.set_tick(snapshot.tick);
+  message.set_scene_revision(snapshot.scene_revision);
+  message.set_rate_hz(rate_hz_);
+  for (const v1::DeviceDescription& device : devices_) message.add_device(device.name());
+  load::write_state(state, message);
+  or_output_error([&] { writer_->write(message, snapshot.monotonic_ns); });
 }
 
 void TickRecording::write(const safety::Fault& fault, std::uint64_t time_ns) {

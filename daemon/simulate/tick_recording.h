@@ -24,6 +24,9 @@ class TickRecording {
 
   void write(const servo::Snapshot& snapshot);
 
+  /// The state after the tick of the snapshot: a replay of what follows can start there.
+  void write(const engine::State& state, const servo::Snapshot& snapshot);
+
   /// A fault of the tick at `time_ns`.
   void write(const safety::Fault& fault, std::uint64_t time_ns);
 
@@ -31,6 +34,7 @@ class TickRecording {
   void close();
 
  private:
+  double rate_hz_;
   std::vector<v1::DeviceDescription> devices_;
   std::unique_ptr<recording::FileSink> sink_;
   std::unique_ptr<recording::SessionWriter> writer_;

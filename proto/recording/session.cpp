@@ -31,6 +31,8 @@ std::string channel_of(v1::Topic topic) {
       return "/haptic/events";
     case v1::STATS:
       return "/haptic/stats";
+    case v1::INPUTS:
+      return "/haptic/inputs";
     default:
       return "";
   }
@@ -62,6 +64,10 @@ void SessionWriter::write(const v1::DeviceList& devices, std::uint64_t time_ns) 
   put(kDevicesTopic, devices, 0, time_ns);
 }
 
+void SessionWriter::write(const v1::WorldState& state, std::uint64_t time_ns) {
+  put(kStateTopic, state, state.tick(), time_ns);
+}
+
 void SessionWriter::write(const v1::Gap& gap, std::uint64_t time_ns) { put(kGapsTopic, gap, 0, time_ns); }
 
 void SessionWriter::write(const v1::Frame& frame) {
@@ -71,6 +77,7 @@ void SessionWriter::write(const v1::Frame& frame) {
   part.clear_devices();
   part.clear_stats();
   part.clear_event();
+  part.clear_inputs();
   if (frame.has_objects()) {
     *part.mutable_objects() = frame.objects();
     put_part(v1::OBJECTS, frame, part);
@@ -85,6 +92,11 @@ void SessionWriter::write(const v1::Frame& frame) {
     *part.mutable_devices() = frame.devices();
     put_part(v1::DEVICES, frame, part);
     part.clear_devices();
+  }
+  if (frame.has_inputs()) {
+    *part.mutable_inputs() = frame.inputs();
+    put_part(v1::INPUTS, frame, part);
+    part.clear_inputs();
   }
   if (frame.has_stats()) {
     *part.mutable_stats() = frame.stats();

@@ -4,6 +4,8 @@
 //     /haptic/objects, /haptic/hips, /haptic/devices, /haptic/events, /haptic/stats
 //                              haptic.v1.Frame, each with its part of what the daemon told
 //     /haptic/scene            haptic.v1.SceneDescription: at the start, and whenever another scene runs
+//     /haptic/inputs           haptic.v1.Frame: all that the state of its tick follows from
+//     /haptic/state            haptic.v1.WorldState: where a replay of the inputs starts
 //     /haptic/device_list      haptic.v1.DeviceList
 //     /haptic/gaps             haptic.v1.Gap: what was lost on the way
 //     /foxglove/transforms     foxglove.FrameTransforms
@@ -31,6 +33,7 @@
 namespace haptic::recording {
 
 inline constexpr const char* kSceneTopic = "/haptic/scene";
+inline constexpr const char* kStateTopic = "/haptic/state";
 inline constexpr const char* kDevicesTopic = "/haptic/device_list";
 inline constexpr const char* kGapsTopic = "/haptic/gaps";
 inline constexpr const char* kSessionMetadata = "hapticd";
@@ -56,6 +59,8 @@ class SessionWriter {
   void write(const v1::SceneDescription& scene, std::uint64_t time_ns,
              std::span<const view::Surface> surfaces = {});
   void write(const v1::DeviceList& devices, std::uint64_t time_ns);
+  /// Where a replay of the inputs that follow can start.
+  void write(const v1::WorldState& state, std::uint64_t time_ns);
 
   /// Each topic that is in it, to its channel.
   void write(const v1::Frame& frame);

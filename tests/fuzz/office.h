@@ -14,13 +14,13 @@ class Office {
  public:
   ipc::Desk& desk() noexcept { return desk_; }
 
-  /// Obeys what waits for the servo thread; returns how many commands there were.
+  /// Obeys what waits for the servo thread; returns how many commands there were that change something.
   std::size_t obey() {
     std::size_t commands = 0;
     servo::Command command;
     while (mailbox_.commands.pop(command)) {
-      ++commands;
-      mailbox_.events.push({.command = command.kind, .request = command.request});
+      commands += command.kind != servo::CommandKind::kCopyState ? 1 : 0;
+      mailbox_.events.push({.command = command.kind, .request = command.request, .copy = command.copy});
     }
     servo_.poll({});
     return commands;

@@ -1,6 +1,6 @@
 // What a client may send after hello: arbitrary bytes as a stream of envelopes, whose requests are
 // dispatched. The first byte chooses the client's role. Whatever comes: each request is answered at most
-// once, and an observer's leave nothing for the servo thread.
+// once, and an observer's change nothing in the servo thread.
 
 #include <cstddef>
 #include <cstdint>

@@ -125,6 +125,12 @@ describe("a simulated run", () => {
     ({ reader, topics } = await readIndexed(bytes));
   });
 
+  it("is replayed to the bit", () => {
+    const replayed = spawnSync(hapticd, ["simulate", "--replay", join(folder, "grasp.mcap"), "--json"]);
+    assert.equal(replayed.status, 0, replayed.stderr.toString());
+    assert.equal(JSON.parse(replayed.stdout).compared, 1200);
+  });
+
   it("has each tick of each topic, in order", () => {
     for (const topic of ["/haptic/objects", "/haptic/hips", "/haptic/devices"]) {
       const frames = topics.get(topic);
@@ -352,7 +358,7 @@ describe("a recording of the daemon", () => {
   it("has the chosen topics, decimated, and tells what it holds", () => {
     const file = join(folder, "chosen.mcap");
     const recorded = spawnSync(hapticctl, ["--socket", socket, "record", file, "--seconds", "1", "--topics",
-      "devices", "--decimation", "10", "--no-viewers", "--json"]);
+      "devices", "--decimation", "10", "--no-viewers", "--no-inputs", "--json"]);
     assert.equal(recorded.status, 0, recorded.stderr.toString());
     const info = JSON.parse(execFileSync(hapticctl, ["info", file, "--json"]));
     assert.equal(info.whole, true);
@@ -362,6 +368,18 @@ describe("a recording of the daemon", () => {
     assert.equal(rates.get("/haptic/devices"), JSON.parse(recorded.stdout).frames);
     assert(rates.get("/haptic/devices") <= 120);
     assert.equal(info.scenes.length, 1);
+    assert.match(info.replay, /^no/);
+  });
+
+  it("is replayed to the bit, unless it was made without inputs", () => {
+    const info = JSON.parse(execFileSync(hapticctl, ["info", join(folder, "SIGINT.mcap"), "--json"]));
+    assert.match(info.replay, /^(yes|with gaps)/);
+    const replayed = spawnSync(hapticctl, ["replay", join(folder, "SIGINT.mcap"), "--json"]);
+    assert.equal(replayed.status, 0, replayed.stdout.toString() + replayed.stderr.toString());
+    const found = JSON.parse(replayed.stdout);
+    assert.equal(found.difference, null);
+    assert(found.compared > 100);
+    assert.equal(spawnSync(hapticctl, ["replay", join(folder, "chosen.mcap")]).status, 1);
   });
 });
 

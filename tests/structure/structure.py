@@ -38,13 +38,28 @@ ROOMS = {
         libraries=("glm/", "google/protobuf/", "fmt/", "posix"),
     ),
     "daemon/ipc": Room(
-        ours=("daemon/servo/mailbox.h", "daemon/engine", "daemon/safety", "daemon/load/error.h", "proto", "schema"),
+        ours=(
+            "daemon/servo/mailbox.h",
+            "daemon/servo/prepare_scene.h",
+            "daemon/engine",
+            "daemon/safety",
+            "daemon/load/embedded_mesh.h",
+            "daemon/load/error.h",
+            "daemon/load/state_message.h",
+            "proto",
+            "schema",
+        ),
         libraries=("glm/", "google/protobuf/", "boost/", "spdlog/", "fmt/", "posix"),
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
+    "daemon/replay": Room(
+        ours=("daemon/servo", "daemon/load", "daemon/engine", "daemon/safety", "drivers/device.h", "schema"),
+        libraries=("glm/", "google/protobuf/"),
+    ),
     "daemon/simulate": Room(
         ours=(
             "daemon/setup",
+            "daemon/replay",
             "daemon/servo",
             "daemon/rt",
             "daemon/load",

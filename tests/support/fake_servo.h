@@ -79,7 +79,8 @@ class FakeServo {
                             .command = command.kind,
                             .request = command.request,
                             .tick = tick_,
-                            .fault = fault_});
+                            .fault = fault_,
+                            .copy = command.copy});
     }
   }
 

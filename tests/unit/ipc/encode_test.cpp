@@ -55,6 +55,40 @@ TEST(EncodeFrame, PacksEachTopicInTheOrderOfTheSchema) {
   EXPECT_FALSE(frame.has_devices());
 }
 
+TEST(EncodeFrame, TellsWhatATickFollowsFrom) {
+  servo::Snapshot snapshot = example_snapshot();
+  snapshot.devices.push_back({.present = true,
+                              .position = {1, 2, 3},
+                              .orientation = {0.5, 0.5, 0.5, -0.5},
+                              .velocity = {4, 5, 6},
+                              .force = {},
+                              .torque = {},
+                              .sample_age = 0.0,
+                              .buttons = 0,
+                              .limits = 0,
+                              .fault = {}});
+  snapshot.inputs.missed = 2;
+  snapshot.inputs.commands[0] = {.kind = servo::CommandKind::kStep, .ticks = 8};
+  snapshot.inputs.commands[1] = {.kind = servo::CommandKind::kSwapScene, .revision = 5};
+  snapshot.inputs.command_count = 2;
+  snapshot.inputs.state_hash = 0x123456789abcdef0;
+  v1::Frame frame;
+  fill_frame(snapshot, topic_bit(v1::INPUTS), {}, 0, frame);
+  const v1::InputsFrame& inputs = frame.inputs();
+  ASSERT_EQ(inputs.orientation_size(), 4);
+  EXPECT_EQ(inputs.position(2), 3.0);
+  EXPECT_EQ(inputs.orientation(3), -0.5);
+  EXPECT_EQ(inputs.velocity(0), 4.0);
+  EXPECT_TRUE(inputs.present(0));
+  EXPECT_EQ(inputs.missed(), 2U);
+  ASSERT_EQ(inputs.command_size(), 2);
+  EXPECT_EQ(inputs.command(0).kind(), v1::InputsFrame::STEP);
+  EXPECT_EQ(inputs.command(0).ticks(), 8U);
+  EXPECT_EQ(inputs.command(1).kind(), v1::InputsFrame::SCENE);
+  EXPECT_EQ(inputs.command(1).scene_revision(), 5U);
+  EXPECT_EQ(inputs.state_hash(), 0x123456789abcdef0U);
+}
+
 TEST(EncodeFrame, WithItsHeadIsTheEnvelopeThatProtobufWouldWrite) {
   v1::Frame frame;
   fill_frame(example_snapshot(), topic_bit(v1::OBJECTS) | topic_bit(v1::DEVICES), {}, 0, frame);
