@@ -5,6 +5,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stop_token>
 #include <string>
 
 #include "client/cli/exit_code.h"
@@ -18,12 +20,19 @@ using Action = std::function<ExitCode(Command&)>;
 /// The connection of a whole run, made when it is first needed.
 using SharedConnection = std::shared_ptr<std::unique_ptr<client::Connection>>;
 
+/// How a verb that runs beside a script is ended, and whom it tells that it does its work.
+struct Background {
+  std::stop_token stop;
+  std::function<void()> begun;
+};
+
 struct Command {
   std::string address;  // --socket
   std::string server;   // --server
   client::Identity identity;
-  bool json = false;  // --json
-  Action action;      // of the verb that was chosen
+  bool json = false;                     // --json
+  Action action;                         // of the verb that was chosen
+  std::optional<Background> background;  // only of a verb that a script has started
   SharedConnection connection = std::make_shared<std::unique_ptr<client::Connection>>();
 
   /// `patience`: for connecting, and for each answer. The verbs of a script share one connection. Throws

@@ -22,6 +22,8 @@ struct Overloaded : Functions... {
 template <typename... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
+constexpr milliseconds kLook{20};  // how often what runs in the background is looked after
+
 client::Clock::time_point in(double seconds) {
   return client::Clock::now() +
          std::chrono::duration_cast<client::Clock::duration>(std::chrono::duration<double>(seconds));
@@ -50,13 +52,15 @@ ExitCode ScriptRunner::run(const std::string& text, const Variables& defines) {
   }
   catch_stop_signals();
   const ExitCode code = run_steps(steps);
+  const ExitCode end = end_background();
   release_lease();
-  return code;
+  return code == kDone ? end : code;
 }
 
 ExitCode ScriptRunner::run_steps(const std::vector<std::pair<int, Step>>& steps) {
   for (const auto& [line, step] : steps) {
-    ExitCode code = run_reporting(step, line);
+    line_ = line;
+    const ExitCode code = run_reporting([this, &step = step] { return run_step(step); }, line);
     if (stop_requested()) {
       complain(line, "stopped by a signal");
       return kFailed;
@@ -69,11 +73,11 @@ ExitCode ScriptRunner::run_steps(const std::vector<std::pair<int, Step>>& steps)
 }
 
 // the code of the line, kDone where it had nothing to do
-ExitCode ScriptRunner::run_reporting(const Step& step, int line) {
+ExitCode ScriptRunner::run_reporting(const std::function<ExitCode()>& action, int line) {
   failure_.clear();
   ExitCode code = kFailed;
   try {
-    code = run_step(step);
+    code = action();
   } catch (const client::Error& error) {
     code = exit_code(error);
     failure_ = error.what();
@@ -87,29 +91,35 @@ ExitCode ScriptRunner::run_reporting(const Step& step, int line) {
 }
 
 ExitCode ScriptRunner::run_step(const Step& step) {
-  return std::visit(Overloaded{[this](const WaitStep& s) { return wait(s.seconds); },
-                               [this](const WaitUntilStep& s) { return wait_until(s); },
-                               [this](const ExpectStep& s) { return expect(s); },
-                               [](const EchoStep& s) {
-                                 fmt::print("{}\n", s.text);
-                                 std::fflush(stdout);
-                                 return kDone;
-                               },
-                               [this](const VerbStep& s) { return run_verb(s); }},
-                    step);
+  return std::visit(
+      Overloaded{[this](const WaitStep& s) { return wait(s.seconds); },
+                 [this](const WaitUntilStep& s) { return wait_until(s); },
+                 [this](const ExpectStep& s) { return expect(s); },
+                 [](const EchoStep& s) {
+                   fmt::print("{}\n", s.text);
+                   std::fflush(stdout);
+                   return kDone;
+                 },
+                 [this](const StartStep& s) { return start(s); }, [this](const StopStep&) { return stop(); },
+                 [this](const VerbStep& s) { return run_verb(s); }},
+      step);
 }
 
 ExitCode ScriptRunner::wait(double seconds) {
   const client::Clock::time_point deadline = in(seconds);
   while (!stop_requested() && client::Clock::now() < deadline) {
-    if (*command_.connection) {
-      // events are taken, so that they do not heap up, and a daemon that goes away is noticed
-      (*command_.connection)->receive(piece_until(deadline));
-    } else {
-      ::poll(nullptr, 0, static_cast<int>(piece_until(deadline).count()));
-    }
+    pass(piece_until(deadline));
   }
   return kDone;
+}
+
+// events are taken, so that they do not heap up; heartbeats go out, and a daemon that goes away is noticed
+void ScriptRunner::pass(milliseconds time) {
+  if (*command_.connection) {
+    (*command_.connection)->receive(time);
+  } else {
+    ::poll(nullptr, 0, static_cast<int>(time.count()));
+  }
 }
 
 ExitCode ScriptRunner::wait_until(const WaitUntilStep& step) {
@@ -143,15 +153,48 @@ ExitCode ScriptRunner::expect(const ExpectStep& step) {
 }
 
 ExitCode ScriptRunner::run_verb(const VerbStep& step) {
-  Command verb;
-  verb.address = command_.address;
-  verb.json = command_.json;
-  verb.connection = command_.connection;
+  Command verb = command_;
   parse_verb(step.words, verb);
   take_lease(step.verb);
   const ExitCode code = verb.action(verb);
   std::fflush(stdout);
   return code;
+}
+
+ExitCode ScriptRunner::start(const StartStep& step) {
+  if (background_) {
+    failure_ = "something is recorded already";
+    return kFailed;
+  }
+  Command verb = command_;
+  parse_verb(step.words, verb);
+  start_line_ = line_;
+  background_ = std::make_unique<BackgroundVerb>(std::move(verb));
+  while (!background_->has_begun_within(milliseconds(0)) && !stop_requested()) {
+    pass(kLook);
+  }
+  // one that has ended by now could not begin, or had nothing more to do
+  return background_->has_ended_within(milliseconds(0)) ? stop() : kDone;
+}
+
+ExitCode ScriptRunner::stop() {
+  if (!background_) {
+    failure_ = "nothing is recorded";
+    return kFailed;
+  }
+  const std::unique_ptr<BackgroundVerb> ending = std::move(background_);
+  ending->stop();
+  while (!ending->has_ended_within(milliseconds(0))) {
+    pass(kLook);
+  }
+  return ending->result();
+}
+
+ExitCode ScriptRunner::end_background() {
+  if (!background_) {
+    return kDone;
+  }
+  return run_reporting([this] { return stop(); }, start_line_);
 }
 
 void ScriptRunner::take_lease(const std::string& verb) {

@@ -24,6 +24,16 @@ Step make_wait(Words words) {
   return WaitUntilStep{parse_condition(words.subspan(1, words.size() - 3)), parse_duration(words.back())};
 }
 
+Step make_start(const std::vector<std::string>& words) {
+  const std::vector<std::string> verb(words.begin() + 1, words.end());
+  if (verb.empty() || verb[0] != "record") {
+    throw std::invalid_argument("start is written: start record FILE");
+  }
+  Command unused;
+  parse_verb(verb, unused);
+  return StartStep{verb};
+}
+
 Step make_any(const std::vector<std::string>& words) {
   const Words rest = Words(words).subspan(1);
   if (words[0] == "wait") {
@@ -34,6 +44,15 @@ Step make_any(const std::vector<std::string>& words) {
   }
   if (words[0] == "echo") {
     return EchoStep{fmt::format("{}", fmt::join(rest, " "))};
+  }
+  if (words[0] == "start") {
+    return make_start(words);
+  }
+  if (words[0] == "stop") {
+    if (rest.size() != 1 || rest[0] != "record") {
+      throw std::invalid_argument("stop is written: stop record");
+    }
+    return StopStep{};
   }
   Command unused;
   return VerbStep{parse_verb(words, unused), words};
@@ -56,6 +75,7 @@ std::string parse_verb(const std::vector<std::string>& words, Command& command) 
     }
   }
   const std::string address = command.address;
+  const std::string server = command.server;
   const std::unique_ptr<CLI::App> app = make_app(command);
   // CLI11 takes the words from the end
   std::vector<std::string> reversed(words.rbegin(), words.rend());
@@ -65,8 +85,8 @@ std::string parse_verb(const std::vector<std::string>& words, Command& command) 
     throw std::invalid_argument(error.get_exit_code() == 0 ? "help is not for scripts"
                                                            : in_words(error, *app));
   }
-  if (command.address != address) {
-    throw std::invalid_argument("a script talks to one daemon: --socket belongs before its name");
+  if (command.address != address || command.server != server) {
+    throw std::invalid_argument("a script talks to one daemon: --socket and --server belong before its name");
   }
   std::string verb;
   for (const CLI::App* at = app.get(); !at->get_subcommands().empty();) {

@@ -28,7 +28,14 @@ struct VerbStep {
   std::vector<std::string> words;
 };
 
-using Step = std::variant<WaitStep, WaitUntilStep, ExpectStep, EchoStep, VerbStep>;
+// record alone can be started: it goes on beside the lines that follow, until it is stopped or the script
+// ends
+struct StartStep {
+  std::vector<std::string> words;  // of the verb
+};
+struct StopStep {};
+
+using Step = std::variant<WaitStep, WaitUntilStep, ExpectStep, EchoStep, VerbStep, StartStep, StopStep>;
 
 /// Throws ScriptError if the line is not right; nothing runs.
 Step make_step(const ScriptLine& line);

@@ -44,7 +44,8 @@ class Recorder {
  public:
   Recorder(Command& command, const RecordOptions& options)
       : json_(command.json),
-        live_(!command.json && is_terminal()),
+        live_(!command.json && !command.background && is_terminal()),
+        background_(command.background.value_or(Background())),
         options_(options),
         daemon_(command.connect()),
         sink_(options.file, options.replace ? FileSink::IfThere::kReplace : FileSink::IfThere::kRefuse,
@@ -69,7 +70,7 @@ class Recorder {
     if (failure) {
       std::rethrow_exception(failure);
     }
-    if (!stop_requested()) {
+    if (!is_stopped()) {
       daemon_.unsubscribe(subscription_);  // a script goes on with this connection
       if (inputs_) {
         inputs_->end();
@@ -92,7 +93,12 @@ class Recorder {
     wish.set_decimation(options_.decimation);
     wish.set_delivery(v1::LOSSLESS);
     subscription_ = daemon_.subscribe(wish);
+    if (background_.begun) {
+      background_.begun();
+    }
   }
+
+  bool is_stopped() const { return stop_requested() || background_.stop.stop_requested(); }
 
   // a recording that cannot be replayed is still worth having
   void begin_inputs() {
@@ -119,7 +125,7 @@ class Recorder {
   void record() {
     const SteadyClock::time_point start = SteadyClock::now();
     SteadyClock::time_point next = start + kPeriod;
-    while (!stop_requested()) {
+    while (!is_stopped()) {
       const SteadyClock::time_point now = SteadyClock::now();
       seconds_ = std::chrono::duration<double>(now - start).count();
       if (options_.seconds > 0.0 && seconds_ >= options_.seconds) {
@@ -236,6 +242,7 @@ class Recorder {
 
   bool json_;
   bool live_;
+  Background background_;
   RecordOptions options_;
   client::Connection& daemon_;
   FileSink sink_;

@@ -67,7 +67,8 @@ void add_run(CLI::App& app, Command& command) {
       ->check(CLI::Validator(check_define, ""));
   verb->footer(
       "Beside every verb of hapticctl a script has: # comments, set name value, $name, for name in a b ...\n"
-      "end, echo, wait 2s, wait until CONDITION for 5s, expect CONDITION. A CONDITION is: object NAME.x (y, "
+      "end, echo, wait 2s, wait until CONDITION for 5s, expect CONDITION, start record FILE, stop record. A "
+      "CONDITION is: object NAME.x (y, "
       "z,\n"
       "vx, vy, vz, speed), finger NAME.force (touching, slipping), device NAME.force (x, y, z, armed) or "
       "tick,\n"

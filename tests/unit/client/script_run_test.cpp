@@ -55,7 +55,8 @@ TEST_F(ScriptRun, StopsAtTheFirstLineThatFailsWithItsExitCode) {
 TEST_F(ScriptRun, ChecksAllOfItBeforeAnythingRuns) {
   for (const char* mistake :
        {"object mvoe box --at 0 0 0", "wait 2", "wait until tick > 1", "expect tick", "run other",
-        "arm --socket /elsewhere", "arm --help", "end", "object add box --sphere", "echo 'x"}) {
+        "arm --socket /elsewhere", "arm --help", "end", "object add box --sphere", "echo 'x", "start",
+        "start arm", "start record", "stop", "stop arm"}) {
     const Finished wrong = run("arm\n" + std::string(mistake) + "\n");
     EXPECT_EQ(wrong.code, 64) << mistake;
     EXPECT_EQ(output(wrong).rfind("test.script:2: ", 0), 0U) << wrong.output;
