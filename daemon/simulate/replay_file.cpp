@@ -41,34 +41,44 @@ class FileReplay {
   }
 
   const replay::Report& run() {
-    const recording::Query frames{.topics = {recording::channel_of(v1::INPUTS),
-                                             recording::channel_of(v1::OBJECTS),
-                                             recording::channel_of(v1::HIPS)}};
-    // the parts of one frame are in channels of their own
-    v1::Frame whole;
-    v1::Frame part;
-    for (auto messages = recording_.messages(frames); messages.next();) {
-      messages.parse(part);
-      if (part.tick() != whole.tick()) {
-        take(whole);
-        whole.Clear();
-      }
-      whole.MergeFrom(part);
+    v1::Frame frame;
+    step_look();
+    for (auto messages = recording_.messages({.topics = {recording::channel_of(v1::INPUTS)}});
+         messages.next();) {
+      messages.parse(frame);
+      add_looks(frame);
+      take(frame);
     }
-    take(whole);
     return replayer_.report();
   }
 
  private:
   void take(const v1::Frame& frame) {
-    if (!frame.has_inputs()) return;
     for (; next_state_ < states_.size() && states_[next_state_].tick() < frame.tick(); ++next_state_) {
       replayer_.take(states_[next_state_]);
     }
     replayer_.take(frame);
   }
 
+  // objects and HIPs are of another subscription, and may come some ticks earlier or later
+  void add_looks(v1::Frame& frame) {
+    while (has_look_ && look_.tick() < frame.tick()) step_look();
+    for (; has_look_ && look_.tick() == frame.tick(); step_look()) {
+      if (look_.has_objects()) *frame.mutable_objects() = look_.objects();
+      if (look_.has_hips()) *frame.mutable_hips() = look_.hips();
+    }
+  }
+
+  void step_look() {
+    has_look_ = looks_.next();
+    if (has_look_) looks_.parse(look_);
+  }
+
   const recording::Recording& recording_;
+  recording::Messages looks_ =
+      recording_.messages({.topics = {recording::channel_of(v1::OBJECTS), recording::channel_of(v1::HIPS)}});
+  v1::Frame look_;  // the next of them
+  bool has_look_ = false;
   std::vector<v1::WorldState> states_;
   std::size_t next_state_ = 0;
   replay::Replayer replayer_;
