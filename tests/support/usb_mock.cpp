@@ -128,21 +128,11 @@ struct Urb {
 
 }  // namespace
 
-struct UsbBus::Impl {
-  UMockdevTestbed* testbed = umockdev_testbed_new();
-  ~Impl() { g_object_unref(testbed); }
-};
-
-UsbBus::UsbBus() : impl_(std::make_unique<Impl>()) {
-  if (!umockdev_in_mock_environment()) throw std::runtime_error("this test needs umockdev's preload library");
-}
-UsbBus::~UsbBus() = default;
-
 struct UsbMock::Impl {
-  Impl(UsbBus& bus, UsbIdentity who, UsbFunction what)
-      : testbed(bus.impl().testbed), identity(std::move(who)), function(std::move(what)) {}
+  Impl(MockBus& on, UsbIdentity who, UsbFunction what)
+      : bus(on), identity(std::move(who)), function(std::move(what)) {}
 
-  UMockdevTestbed* testbed;
+  MockBus& bus;
   UsbIdentity identity;
   UsbFunction function;
   std::string sys_path;
@@ -190,22 +180,16 @@ void UsbMock::Impl::plug_in() {
       "\nA: busnum=1\\n\nA: devnum=" + number + "\\n\nA: speed=12\\n\nA: bConfigurationValue=1\\n" +
       "\nA: idVendor=" + hex4(identity.vendor) + "\\n\nA: idProduct=" + hex4(identity.product) +
       "\\n\nH: descriptors=" + hex(descriptors(identity)) + "\n";
-  GError* error = nullptr;
-  if (!umockdev_testbed_add_from_string(testbed, text.c_str(), &error))
-    throw std::runtime_error(error->message);
+  bus.add(text);
   make_node();
   handler = umockdev_ioctl_base_new();
   signal = g_signal_connect(handler, "handle-ioctl", G_CALLBACK(&Impl::handle), this);
-  if (!umockdev_testbed_attach_ioctl(testbed, node.c_str(), handler, &error)) {
-    throw std::runtime_error(error->message);
-  }
+  bus.attach(node, handler);
   pump = std::thread([this] { serve(); });
 }
 
 void UsbMock::Impl::make_node() {
-  char* const root = umockdev_testbed_get_root_dir(testbed);
-  const std::string path = root + node;
-  g_free(root);
+  const std::string path = bus.real_path(node);
   // only what the preload library does not see reaches the real files; it leaves paths below the root alone
   ::unlink(path.c_str());
   if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error("no FIFO for the device's node");
@@ -357,7 +341,7 @@ void UsbMock::Impl::serve() {
   }
 }
 
-UsbMock::UsbMock(UsbBus& bus, const UsbIdentity& identity, UsbFunction function)
+UsbMock::UsbMock(MockBus& bus, const UsbIdentity& identity, UsbFunction function)
     : impl_(std::make_unique<Impl>(bus, identity, std::move(function))) {
   impl_->plug_in();
 }
@@ -366,8 +350,8 @@ UsbMock::~UsbMock() {
   impl_->ending = true;
   impl_->pump.join();
   g_signal_handler_disconnect(impl_->handler, impl_->signal);
-  umockdev_testbed_detach_ioctl(impl_->testbed, impl_->node.c_str(), nullptr);
-  umockdev_testbed_remove_device(impl_->testbed, ("/sys" + impl_->sys_path).c_str());
+  umockdev_testbed_detach_ioctl(impl_->bus.testbed(), impl_->node.c_str(), nullptr);
+  umockdev_testbed_remove_device(impl_->bus.testbed(), ("/sys" + impl_->sys_path).c_str());
   g_object_unref(impl_->handler);
   ::close(impl_->fifo);
 }

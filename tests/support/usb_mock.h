@@ -1,7 +1,6 @@
 #pragma once
 // A USB device that libusb finds, opens and talks to, without hardware, rights or a kernel driver: umockdev
-// shows the process another /sys and /dev, and hands what libusb asks of the device's node to this file. The
-// process must run under umockdev's preload library (haptic_mocked_test in CMake).
+// hands what libusb asks of the device's node to this file.
 //
 // What the device does is a UsbFunction. Time is not that of hardware: an exchange costs about a millisecond,
 // so tests may wait for what must come, but never measure.
@@ -14,6 +13,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "tests/support/mock_bus.h"
 
 namespace haptic::test {
 
@@ -32,27 +33,12 @@ struct UsbIdentity {
   int port = 1;          // 1 to 9; two devices need different ones
 };
 
-/// The machine that devices are plugged into. Make it before anything uses libusb.
-class UsbBus {
- public:
-  UsbBus();
-  ~UsbBus();
-  UsbBus(const UsbBus&) = delete;
-  UsbBus& operator=(const UsbBus&) = delete;
-
-  struct Impl;
-  Impl& impl() { return *impl_; }
-
- private:
-  std::unique_ptr<Impl> impl_;
-};
-
 /// An FTDI bridge with something behind it: two status bytes before each packet, and one of them alone every
 /// millisecond while there is nothing to say.
 class UsbMock {
  public:
   /// Plugs it in.
-  UsbMock(UsbBus& bus, const UsbIdentity& identity, UsbFunction function);
+  UsbMock(MockBus& bus, const UsbIdentity& identity, UsbFunction function);
   ~UsbMock();
   UsbMock(const UsbMock&) = delete;
   UsbMock& operator=(const UsbMock&) = delete;

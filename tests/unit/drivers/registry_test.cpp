@@ -63,6 +63,27 @@ TEST(Registry, MakesAPlaybackDeviceOfItsConfig) {
   EXPECT_DOUBLE_EQ(sample.position.x, 0.25) << "the path starts again";
 }
 
+TEST(Registry, MakesAFalconOfItsConfig) {
+  v1::Device config;
+  config.set_name("right");
+  config.mutable_falcon()->set_max_force(2.5);
+  EXPECT_EQ(path_file_of(config), "");
+  const std::unique_ptr<Device> device = make_device(config, {}, "firmware");
+  EXPECT_EQ(device->info().name, "right");
+  EXPECT_EQ(device->info().driver, "falcon");
+  EXPECT_EQ(device->info().max_force, 2.5);
+}
+
+TEST(Registry, OnlyWhatFollowsAPathIsComputed) {
+  v1::Device config;
+  config.mutable_simulated();
+  EXPECT_TRUE(is_computed(config));
+  config.mutable_playback();
+  EXPECT_TRUE(is_computed(config));
+  config.mutable_falcon();
+  EXPECT_FALSE(is_computed(config));
+}
+
 TEST(Registry, ADeviceWithoutADriverIsAnErrorThatNamesIt) {
   v1::Device config;
   config.set_name("nameless");

@@ -8,9 +8,12 @@
 #include <thread>
 
 #include "drivers/device_error.h"
+#include "tests/support/eventually.h"
 
 namespace haptic::drivers {
 namespace {
+
+using test::eventually;
 
 /// What a routine was asked for, and how it shall fail.
 struct Trace {
@@ -48,15 +51,6 @@ class CountingRoutine final : public DeviceRoutine {
 ThreadedDevice device_of(Trace& trace) {
   return {
       {.name = "left", .driver = "counting", .max_force = 4.0}, {}, std::make_unique<CountingRoutine>(trace)};
-}
-
-/// Waits up to 10 s.
-bool eventually(const auto& is_so) {
-  for (int i = 0; i < 10000; ++i) {
-    if (is_so()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
 }
 
 TEST(ThreadedDevice, RunsItsRoutineFromStartToStop) {

@@ -13,23 +13,16 @@
 
 #include "drivers/device_error.h"
 #include "rt/tick_clock.h"
+#include "tests/support/eventually.h"
 #include "tests/support/falcon_emulator.h"
 #include "tests/support/usb_mock.h"
 
 namespace haptic::drivers::falcon {
 namespace {
 
-constexpr Nanoseconds kSecond = 1'000'000'000;
+using test::eventually;
 
-/// Waits up to 20 s.
-bool eventually(const auto& is_so) {
-  const Nanoseconds give_up = rt::monotonic_ns() + 20 * kSecond;
-  while (rt::monotonic_ns() < give_up) {
-    if (is_so()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
+constexpr Nanoseconds kSecond = 1'000'000'000;
 
 std::vector<std::uint8_t> firmware() {
   std::vector<std::uint8_t> bytes(150);
@@ -84,7 +77,7 @@ class FalconDevice : public testing::Test {
     return "";
   }
 
-  test::UsbBus bus;
+  test::MockBus bus;
   test::FalconEmulator emulator;
   std::optional<test::UsbMock> mock;
   DeviceSample sample;
