@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <string_view>
 
 #include "load/ranges.h"
@@ -77,6 +78,81 @@ std::string falcon(const TextSource& source, const std::string& field, const std
   return bytes;
 }
 
+void spacemouse(const TextSource& source, const std::string& field, v1::Device::Spacemouse& device) {
+  number(source, field + ".speed", device.speed(), 0.1, {0.0, 2.0, " m/s", true},
+         [&](double v) { device.set_speed(v); });
+  number(source, field + ".turn_rate", device.turn_rate(), 1.0, {0.0, 20.0, " rad/s", true},
+         [&](double v) { device.set_turn_rate(v); });
+  number(source, field + ".reach", device.reach(), 0.2, {0.0, 100.0, " m", true},
+         [&](double v) { device.set_reach(v); });
+  constexpr std::array<std::string_view, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
+  for (int i = 0; i < device.inverted_size(); ++i) {
+    if (std::find(kAxes.begin(), kAxes.end(), device.inverted(i)) != kAxes.end()) continue;
+    source.fail(item(field + ".inverted", i),
+                in_quotes(device.inverted(i)) + " is no axis (permitted: x, y, z, rx, ry, rz)");
+  }
+}
+
+void require_port(const TextSource& source, const std::string& field, const std::string& port) {
+  if (port.empty()) source.fail(field + ".port", "is missing: expected a serial port, e.g. \"/dev/ttyUSB0\"");
+}
+
+void fastrak(const TextSource& source, const std::string& field, v1::Device::Fastrak& device) {
+  require_port(source, field, device.port());
+  if (device.baud() == 0) device.set_baud(115200);
+  constexpr std::array<std::uint32_t, 7> kRates = {2400, 4800, 9600, 19200, 38400, 57600, 115200};
+  if (std::find(kRates.begin(), kRates.end(), device.baud()) == kRates.end()) {
+    source.fail(field + ".baud",
+                std::to_string(device.baud()) +
+                    " is none of its rates (permitted: 2400, 4800, 9600, 19200, 38400, 57600, 115200)");
+  }
+  if (device.station() == 0) device.set_station(1);
+  check_range(source, field + ".station", device.station(), {1, 4});
+  if (!device.has_hemisphere()) device.mutable_hemisphere()->set_x(1.0);
+  const glm::dvec3 hemisphere = make_point(source, field + ".hemisphere", device.hemisphere());
+  if (hemisphere == glm::dvec3(0.0)) source.fail(field + ".hemisphere", "points nowhere");
+}
+
+void polhem(const TextSource& source, const std::string& field, v1::Device::Polhem& device) {
+  using Polhem = v1::Device::Polhem;
+  if (device.model() == Polhem::MODEL_UNSPECIFIED) {
+    source.fail(field + ".model",
+                "is missing (permitted: WOODENHAPTICS_2019, WOODENHAPTICS_2015, ALUHAPTICS_V2, VINTAGE)");
+  }
+  number(source, field + ".max_current", device.max_current(), 2.0, {0.0, 6.0, " A", true},
+         [&](double v) { device.set_max_current(v); });
+  number(source, field + ".max_force", device.max_force(), 5.0, {0.0, 20.0, " N", true},
+         [&](double v) { device.set_max_force(v); });
+  if (device.has_udp()) {
+    if (device.udp().port() == 0) device.mutable_udp()->set_port(47111);
+    check_range(source, field + ".udp.port", device.udp().port(), {1, 65535});
+  } else {
+    Polhem::Usb& usb = *device.mutable_usb();
+    if (usb.vendor() == 0) usb.set_vendor(0x16c0);
+    if (usb.product() == 0) usb.set_product(0x0486);
+    check_range(source, field + ".usb.vendor", usb.vendor(), {1, 65535});
+    check_range(source, field + ".usb.product", usb.product(), {1, 65535});
+  }
+  if (device.rest_counts_size() == 0 && device.model() == Polhem::WOODENHAPTICS_2019) {
+    for (const int count : {0, 0, 6000}) device.add_rest_counts(count);
+  }
+  if (device.rest_counts_size() != 3) {
+    source.fail(field + ".rest_counts", "has " + std::to_string(device.rest_counts_size()) +
+                                            " numbers: expected one for each of three encoders");
+  }
+  for (int i = 0; i < 3; ++i) {
+    check_range(source, item(field + ".rest_counts", i), device.rest_counts(i), {-32768, 32767});
+  }
+}
+
+void haply(const TextSource& source, const std::string& field, v1::Device::Haply& device) {
+  require_port(source, field, device.port());
+  if (device.model() == v1::Device::Haply::MODEL_UNSPECIFIED) {
+    device.set_model(v1::Device::Haply::HARDWARE_3);
+  }
+  check_range(source, field + ".max_force", device.max_force(), {0.0, 5.0, " N"});
+}
+
 }  // namespace
 
 std::string known_drivers() {
@@ -100,7 +176,27 @@ std::string check_hardware(const TextSource& source, const std::string& field,
     source.fail(field + ".base", "is only for hardware: this device follows a path in the world");
   }
   if (device.has_base()) check_base(source, field + ".base", *device.mutable_base());
-  if (device.has_falcon()) return falcon(source, field + ".falcon", file, *device.mutable_falcon());
+  switch (device.driver_case()) {
+    case v1::Device::kFalcon:
+      return falcon(source, field + ".falcon", file, *device.mutable_falcon());
+    case v1::Device::kSpacemouse:
+      spacemouse(source, field + ".spacemouse", *device.mutable_spacemouse());
+      break;
+    case v1::Device::kHydra:
+      check_range(source, field + ".hydra.wand", device.hydra().wand(), {0, 1});
+      break;
+    case v1::Device::kFastrak:
+      fastrak(source, field + ".fastrak", *device.mutable_fastrak());
+      break;
+    case v1::Device::kPolhem:
+      polhem(source, field + ".polhem", *device.mutable_polhem());
+      break;
+    case v1::Device::kHaply:
+      haply(source, field + ".haply", *device.mutable_haply());
+      break;
+    default:
+      break;
+  }
   return {};
 }
 

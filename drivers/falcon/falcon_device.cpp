@@ -25,6 +25,7 @@ constexpr std::size_t kWrites = 3;
 constexpr std::chrono::milliseconds kSendTimeout{1000};
 constexpr int kLastPackets = 8;
 constexpr Nanoseconds kLastPacketsWait = 100'000'000;
+constexpr std::chrono::milliseconds kLastPacketTimeout{20};
 
 class UsbFtdiPort final : public FtdiPort {
  public:
@@ -94,8 +95,8 @@ class FalconRoutine final : public DeviceRoutine {
       }
       usb_->wait(schedule.next_due_ns());
     }
-    if (usb_->is_gone()) throw DeviceError("unplugged");
     let_go(writer);
+    if (usb_->is_gone()) throw DeviceError("unplugged");
   }
 
   void close() noexcept override { usb_.reset(); }
@@ -121,6 +122,13 @@ class FalconRoutine final : public DeviceRoutine {
     while ((sent < kLastPackets || !writer.is_idle()) && rt::monotonic_ns() < give_up && !usb_->is_gone()) {
       if (sent < kLastPackets && writer.submit(nothing)) ++sent;
       usb_->wait(rt::monotonic_ns() + 1'000'000);
+    }
+    if (sent == kLastPackets) return;
+    // a transfer that failed need not mean that the device is out of reach
+    try {
+      for (; sent < kLastPackets; ++sent) usb_->bulk_out(kEndpointOut, nothing, kLastPacketTimeout);
+    } catch (const DeviceError&) {
+      // it is
     }
   }
 

@@ -53,9 +53,21 @@ ROOMS = {
     "drivers/device.h": Room(libraries=("glm/",)),
     "drivers": Room(
         ours=("drivers/device.h", "drivers/io", "daemon/rt"),
-        libraries=("glm/", "posix"),
+        libraries=("glm/", "fmt/", "posix"),
     ),
     # the ways to devices, which know no device
+    "drivers/io/hid": Room(
+        ours=("drivers/device.h", "drivers/device_error.h", "daemon/rt"),
+        libraries=("hidapi/", "posix"),
+    ),
+    "drivers/io/serial": Room(
+        ours=("drivers/device_error.h",),
+        libraries=("boost/asio", "boost/system/", "posix"),
+    ),
+    "drivers/io/udp": Room(
+        ours=("drivers/device_error.h",),
+        libraries=("boost/asio", "boost/system/"),
+    ),
     "drivers/io/usb": Room(
         ours=("drivers/device.h", "drivers/device_error.h", "daemon/rt"),
         libraries=("libusb-1.0/", "posix"),

@@ -5,6 +5,7 @@
 
 #include <umockdev.h>
 
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -42,6 +43,11 @@ class MockBus {
     throw std::runtime_error(message);
   }
 
+  /// The same for what several devices share, and only the first adds.
+  void add_once(const std::string& path, const std::string& text) {
+    if (shared_.insert(path).second) add(text);
+  }
+
   /// Lets `handler` answer for the node.
   void attach(const std::string& node, UMockdevIoctlBase* handler) const {
     GError* error = nullptr;
@@ -53,6 +59,7 @@ class MockBus {
 
  private:
   UMockdevTestbed* testbed_;
+  std::set<std::string> shared_;
 };
 
 }  // namespace haptic::test

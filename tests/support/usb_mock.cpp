@@ -145,6 +145,7 @@ struct UsbMock::Impl {
   std::deque<Urb> waiting;  // for data
   std::deque<Urb> done;
   bool gone = false;
+  bool fails_next_out = false;
   bool is_full = true;  // the node: nothing can be reaped
   std::atomic<bool> ending{false};
   std::thread pump;
@@ -260,6 +261,9 @@ void UsbMock::Impl::submit(UMockdevIoctlClient* client) {
     control_request(urb);
   } else if ((request->endpoint & kFromDevice) != 0) {
     if (!give_data(urb, false)) waiting.push_back(urb);
+  } else if (fails_next_out) {
+    fails_next_out = false;
+    finish(urb, -EPIPE, 0);
   } else {
     function.out(urb.bytes());
     finish(urb, 0, length);
@@ -364,6 +368,11 @@ void UsbMock::unplug() {
     impl_->waiting.pop_front();
   }
   impl_->tell();
+}
+
+void UsbMock::fail_next_out() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->fails_next_out = true;
 }
 
 void UsbMock::with_lock(const std::function<void()>& act) {

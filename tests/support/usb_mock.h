@@ -46,6 +46,9 @@ class UsbMock {
   /// From now on the device is gone: transfers in flight fail, new ones are refused.
   void unplug();
 
+  /// The next transfer to the device fails, although it is there.
+  void fail_next_out();
+
   /// Runs `act` between two requests to the device, for what changes or reads what is behind it.
   void with_lock(const std::function<void()>& act);
 

@@ -1,5 +1,7 @@
 #include "drivers/registry.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
 #include <gtest/gtest.h>
 
 namespace haptic::drivers {
@@ -72,6 +74,19 @@ TEST(Registry, MakesAFalconOfItsConfig) {
   EXPECT_EQ(device->info().name, "right");
   EXPECT_EQ(device->info().driver, "falcon");
   EXPECT_EQ(device->info().max_force, 2.5);
+}
+
+TEST(Registry, EveryDriverOfTheSchemaIsKnown) {
+  const google::protobuf::OneofDescriptor* const drivers =
+      v1::Device::descriptor()->FindOneofByName("driver");
+  for (int i = 0; i < drivers->field_count(); ++i) {
+    v1::Device config;
+    config.set_name("it");
+    config.GetReflection()->MutableMessage(&config, drivers->field(i));
+    const std::unique_ptr<Device> device = make_device(config, {});
+    EXPECT_EQ(device->info().name, "it");
+    EXPECT_EQ(device->info().driver, drivers->field(i)->name());
+  }
 }
 
 TEST(Registry, OnlyWhatFollowsAPathIsComputed) {

@@ -78,6 +78,59 @@ TEST(DeviceConfig, RefusesNumbersOutOfTheirRanges) {
   EXPECT_EQ(error_in(folder, "falcon { max_force: -1 }").field(), "device[0].falcon.max_force");
 }
 
+TEST(DeviceConfig, FillsInTheDefaultsOfTheOthers) {
+  const TemporaryFolder folder;
+  const v1::Device mouse = device_of(folder, "spacemouse { inverted: \"y\" inverted: \"rz\" }");
+  EXPECT_EQ(mouse.spacemouse().speed(), 0.1);
+  EXPECT_EQ(mouse.spacemouse().turn_rate(), 1.0);
+  EXPECT_EQ(mouse.spacemouse().reach(), 0.2);
+  EXPECT_EQ(device_of(folder, "hydra { wand: 1 }").hydra().wand(), 1U);
+  const v1::Device tracker = device_of(folder, "fastrak { port: \"/dev/ttyS0\" }");
+  EXPECT_EQ(tracker.fastrak().baud(), 115200U);
+  EXPECT_EQ(tracker.fastrak().station(), 1U);
+  EXPECT_EQ(tracker.fastrak().hemisphere().x(), 1.0);
+  const v1::Device arm = device_of(folder, "polhem { model: WOODENHAPTICS_2019 }");
+  EXPECT_EQ(arm.polhem().usb().vendor(), 0x16c0U);
+  EXPECT_EQ(arm.polhem().usb().product(), 0x0486U);
+  EXPECT_EQ(arm.polhem().rest_counts(2), 6000);
+  EXPECT_EQ(arm.polhem().max_current(), 2.0);
+  EXPECT_EQ(
+      device_of(folder, "polhem { model: VINTAGE rest_counts: [1, 2, 3] udp {} }").polhem().udp().port(),
+      47111U);
+  const v1::Device planar = device_of(folder, "haply { port: \"/dev/ttyACM0\" }");
+  EXPECT_EQ(planar.haply().model(), v1::Device::Haply::HARDWARE_3);
+  EXPECT_EQ(planar.haply().max_force(), 0.0);
+}
+
+TEST(DeviceConfig, TellsTheFieldThatIsWrong) {
+  const TemporaryFolder folder;
+  const std::pair<const char*, const char*> cases[] = {
+      {"spacemouse { inverted: \"x\" inverted: \"roll\" }", "spacemouse.inverted[1]"},
+      {"spacemouse { speed: 3 }", "spacemouse.speed"},
+      {"spacemouse { turn_rate: -1 }", "spacemouse.turn_rate"},
+      {"spacemouse { reach: 101 }", "spacemouse.reach"},
+      {"hydra { wand: 2 }", "hydra.wand"},
+      {"fastrak {}", "fastrak.port"},
+      {"fastrak { port: \"p\" baud: 9601 }", "fastrak.baud"},
+      {"fastrak { port: \"p\" station: 5 }", "fastrak.station"},
+      {"fastrak { port: \"p\" hemisphere {} }", "fastrak.hemisphere"},
+      {"polhem {}", "polhem.model"},
+      {"polhem { model: VINTAGE }", "polhem.rest_counts"},
+      {"polhem { model: VINTAGE rest_counts: [1, 2] }", "polhem.rest_counts"},
+      {"polhem { model: VINTAGE rest_counts: [1, 2, 40000] }", "polhem.rest_counts[2]"},
+      {"polhem { model: WOODENHAPTICS_2019 max_current: 7 }", "polhem.max_current"},
+      {"polhem { model: WOODENHAPTICS_2019 max_force: 21 }", "polhem.max_force"},
+      {"polhem { model: WOODENHAPTICS_2019 usb { vendor: 65536 } }", "polhem.usb.vendor"},
+      {"polhem { model: WOODENHAPTICS_2019 usb { product: 65536 } }", "polhem.usb.product"},
+      {"polhem { model: WOODENHAPTICS_2019 udp { port: 65536 } }", "polhem.udp.port"},
+      {"haply {}", "haply.port"},
+      {"haply { port: \"p\" max_force: 6 }", "haply.max_force"},
+  };
+  for (const auto& [text, field] : cases) {
+    EXPECT_EQ(error_in(folder, text).field(), std::string("device[0].") + field) << text;
+  }
+}
+
 TEST(DeviceConfig, TheBaseOfHardwareIsNormalised) {
   const TemporaryFolder folder;
   const v1::Device device = device_of(folder, "falcon {} base { orientation { w: 3 z: 4 } }");
@@ -94,7 +147,8 @@ TEST(DeviceConfig, WhatIsComputedHasNoBase) {
 TEST(DeviceConfig, ADeviceWithoutADriverIsToldWhichThereAre) {
   const TemporaryFolder folder;
   const std::string message = error_in(folder, "").message();
-  for (const char* name : {"simulated", "playback", "falcon"}) {
+  for (const char* name :
+       {"simulated", "playback", "falcon", "spacemouse", "hydra", "fastrak", "polhem", "haply"}) {
     EXPECT_NE(message.find(name), std::string::npos) << message;
   }
 }

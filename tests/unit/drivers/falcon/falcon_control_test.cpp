@@ -176,6 +176,16 @@ TEST(FalconControl, OutsideTheTrustedBoxThereIsAPositionButNoForce) {
   EXPECT_TRUE(rig.motors_rest());
 }
 
+TEST(FalconControl, RepliesMayBeSeveralMillisecondsOnTheirWay) {
+  FalconRig rig;
+  rig.delay = 4;
+  rig.emulator.set_homed(kAllHomed);
+  rig.emulator.hold_at(kCentre);
+  rig.run(120, {1e-9, 0.0, 0.0});
+  rig.run(1, kPush);
+  EXPECT_NEAR(rig.emulator.force().z, kPush.z, 0.01);
+}
+
 TEST(FalconControl, GarbageBetweenRepliesCostsNone) {
   FalconRig rig;
   rig.emulator.troubles.garbage = 13;

@@ -135,6 +135,25 @@ TEST_F(FalconDevice, UnpluggingItEndsItsSamplesAndStopStillReturns) {
   device->stop();
 }
 
+TEST_F(FalconDevice, ATransferThatFailsEndsItWithoutForce) {
+  plug_in();
+  const std::unique_ptr<Device> device = make_falcon(settings());
+  device->start();
+  homed_at(kCentre);
+  ASSERT_TRUE(eventually([&] {
+    push(*device, {0.0, 0.0, 2.0});
+    return felt().z > 1.0;
+  }));
+  mock->fail_next_out();
+  EXPECT_TRUE(eventually([&] {
+    push(*device, {0.0, 0.0, 2.0});
+    return !read(*device);
+  }));
+  EXPECT_TRUE(eventually([&] { return felt() == glm::dvec3(0.0); })) << "it was told so while it could be";
+  EXPECT_EQ(emulator.flags(), 1U) << "LEDs off";
+  device->stop();
+}
+
 TEST_F(FalconDevice, ADeviceThatFallsSilentHasNoSample) {
   plug_in();
   FalconSettings falcon = settings();

@@ -1,6 +1,7 @@
 #pragma once
 // The driver's decisions against the emulated device on a virtual clock: no thread, no USB.
 
+#include <deque>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -34,12 +35,16 @@ class FalconRig {
     now += kMillisecond;
     const Packet packet = control.next_packet(wanted, now);
     emulator.receive(packet);
-    const std::vector<std::uint8_t> bytes = emulator.send(1000);
-    control.take(bytes, now + kMillisecond / 2);
+    on_the_way.push_back(emulator.send(1000));
+    if (on_the_way.size() <= delay) return;
+    control.take(on_the_way.front(), now + kMillisecond / 2);
+    on_the_way.pop_front();
   }
 
   bool motors_rest() const { return emulator.motors() == std::array<int, 3>{}; }
 
+  std::size_t delay = 0;  // ticks that a reply takes
+  std::deque<std::vector<std::uint8_t>> on_the_way;
   Nanoseconds now = 0;
   FalconControl control;
   test::FalconEmulator emulator;
