@@ -357,6 +357,12 @@ UsbMock::~UsbMock() {
   umockdev_testbed_detach_ioctl(impl_->bus.testbed(), impl_->node.c_str(), nullptr);
   umockdev_testbed_remove_device(impl_->bus.testbed(), ("/sys" + impl_->sys_path).c_str());
   g_object_unref(impl_->handler);
+  for (const std::deque<Urb>* urbs : {&impl_->waiting, &impl_->done}) {
+    for (const Urb& urb : *urbs) {
+      g_object_unref(urb.buffer);
+      g_object_unref(urb.block);
+    }
+  }
   ::close(impl_->fifo);
 }
 

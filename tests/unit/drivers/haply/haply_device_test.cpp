@@ -25,7 +25,8 @@ constexpr Nanoseconds kSecond = 1'000'000'000;
 constexpr float kJoint1 = 108.0F;  // degrees
 constexpr float kJoint2 = 72.0F;
 
-/// Answers each request with the same angles, in two pieces; now and then with a byte too many before.
+/// Answers each request with the same angles, in two pieces; as often as it is told, with a stray byte
+/// before.
 class EmulatedBoard {
  public:
   explicit EmulatedBoard(test::SerialMock& port) : port_(port), thread_([this] { serve(); }) {}
@@ -35,7 +36,7 @@ class EmulatedBoard {
   }
 
   std::atomic<bool> deaf{false};
-  std::atomic<bool> garbles{false};
+  std::atomic<int> strays{0};
   std::atomic<bool> is_set_up{false};
   std::atomic<float> torque1{0.0F};
   std::atomic<float> torque2{0.0F};
@@ -80,14 +81,16 @@ class EmulatedBoard {
     std::memcpy(reply.data() + 1, &kJoint2, 4);
     std::memcpy(reply.data() + 5, &kJoint1, 4);
     const std::uint8_t stray = 0x77;
-    if (garbles && ++replies_ % 5 == 0) port_.send({&stray, 1});
+    if (strays > 0) {
+      port_.send({&stray, 1});
+      --strays;
+    }
     port_.send(std::span(reply).first(4));
     port_.send(std::span(reply).subspan(4));
   }
 
   test::SerialMock& port_;
   std::vector<std::uint8_t> bytes_;
-  int replies_ = 0;
   std::thread thread_;
 };
 
@@ -144,10 +147,14 @@ TEST(HaplyDevice, FindsItsWayBackAfterStrayBytes) {
   EmulatedBoard board(port);
   const std::unique_ptr<Device> device = make_haply(settings(port));
   device->start();
-  board.garbles = true;
-  DeviceSample sample;
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(eventually([&] { return device->read(0, sample); }));
-  EXPECT_NEAR(sample.position.x, 0.019, 1e-6);
+  for (int i = 0; i < 5; ++i) {
+    board.strays = 1;
+    ASSERT_TRUE(eventually([&] { return board.strays == 0; }));
+    const Nanoseconds then = rt::monotonic_ns();
+    DeviceSample sample;
+    ASSERT_TRUE(eventually([&] { return device->read(0, sample) && sample.time > then; }));
+    EXPECT_NEAR(sample.position.x, 0.019, 1e-6);
+  }
 }
 
 TEST(HaplyDevice, SilenceEndsItsSamplesAndTorques) {
