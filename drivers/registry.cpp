@@ -1,34 +1,137 @@
 #include "drivers/registry.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "drivers/falcon/falcon_device.h"
+#include "drivers/fastrak/fastrak_device.h"
+#include "drivers/haply/haply_device.h"
+#include "drivers/hydra/hydra_device.h"
 #include "drivers/playback/playback_device.h"
+#include "drivers/polhem/polhem_device.h"
 #include "drivers/simulated/simulated_device.h"
+#include "drivers/spacemouse/spacemouse_device.h"
 
 namespace haptic::drivers {
 
 namespace {
 
-struct Driver {
-  v1::Device::DriverCase driver;
-  std::string (*path_file)(const v1::Device& config);
-  std::unique_ptr<Device> (*make)(const v1::Device& config, std::vector<PathPoint> path);
+/// What the files hold that a config names.
+struct Files {
+  std::vector<PathPoint> path;
+  const std::string& firmware;
 };
 
-std::unique_ptr<Device> make_simulated(const v1::Device& config, std::vector<PathPoint> path) {
+struct Driver {
+  v1::Device::DriverCase driver;
+  std::string (*path_file)(const v1::Device& config);  // none: hardware, which follows no path
+  std::unique_ptr<Device> (*make)(const v1::Device& config, Files files);
+};
+
+BasePose base_of(const v1::Device& config) {
+  if (!config.has_base()) return {};
+  const v1::Vector3& position = config.base().position();
+  const v1::Quaternion& turn = config.base().orientation();
+  return {.position = {position.x(), position.y(), position.z()},
+          .orientation = {turn.w(), turn.x(), turn.y(), turn.z()}};
+}
+
+std::unique_ptr<Device> make_simulated(const v1::Device& config, Files files) {
   const v1::Device::Simulated& simulated = config.simulated();
   SimulatedSettings settings{.name = config.name(),
                              .mass = simulated.mass(),
                              .damping = simulated.damping(),
                              .hand_stiffness = simulated.hand().stiffness(),
                              .hand_damping = simulated.hand().damping(),
-                             .path = std::move(path),
+                             .path = std::move(files.path),
                              .repeat = simulated.hand().repeat()};
   return std::make_unique<SimulatedDevice>(std::move(settings));
 }
 
-std::unique_ptr<Device> make_playback(const v1::Device& config, std::vector<PathPoint> path) {
-  return std::make_unique<PlaybackDevice>(config.name(), std::move(path), config.playback().repeat());
+std::unique_ptr<Device> make_playback(const v1::Device& config, Files files) {
+  return std::make_unique<PlaybackDevice>(config.name(), std::move(files.path), config.playback().repeat());
+}
+
+std::unique_ptr<Device> make_falcon(const v1::Device& config, Files files) {
+  const v1::Device::Falcon& falcon = config.falcon();
+  return falcon::make_falcon({.name = config.name(),
+                              .serial = falcon.serial(),
+                              .firmware = {files.firmware.begin(), files.firmware.end()},
+                              .world_from_base = base_of(config),
+                              .control = {.gain = falcon.gain(), .max_force = falcon.max_force()}});
+}
+
+std::unique_ptr<Device> make_spacemouse(const v1::Device& config, Files /*files*/) {
+  const v1::Device::Spacemouse& spacemouse = config.spacemouse();
+  const auto sign = [&](const char* axis) {
+    const auto& inverted = spacemouse.inverted();
+    return std::find(inverted.begin(), inverted.end(), axis) == inverted.end() ? 1.0 : -1.0;
+  };
+  return spacemouse::make_spacemouse({.name = config.name(),
+                                      .serial = spacemouse.serial(),
+                                      .world_from_base = base_of(config),
+                                      .motion = {.speed = spacemouse.speed(),
+                                                 .turn_rate = spacemouse.turn_rate(),
+                                                 .reach = spacemouse.reach(),
+                                                 .translation_signs = {sign("x"), sign("y"), sign("z")},
+                                                 .rotation_signs = {sign("rx"), sign("ry"), sign("rz")}}});
+}
+
+std::unique_ptr<Device> make_hydra(const v1::Device& config, Files /*files*/) {
+  return hydra::make_hydra(
+      {.name = config.name(), .wand = config.hydra().wand(), .world_from_base = base_of(config)});
+}
+
+std::unique_ptr<Device> make_fastrak(const v1::Device& config, Files /*files*/) {
+  const v1::Device::Fastrak& fastrak = config.fastrak();
+  const v1::Vector3& towards = fastrak.hemisphere();
+  return fastrak::make_fastrak({.name = config.name(),
+                                .port = fastrak.port(),
+                                .baud = fastrak.baud(),
+                                .station = static_cast<int>(fastrak.station()),
+                                .hemisphere = {towards.x(), towards.y(), towards.z()},
+                                .world_from_base = base_of(config)});
+}
+
+const polhem::Model& polhem_model(v1::Device::Polhem::Model model) {
+  switch (model) {
+    case v1::Device::Polhem::WOODENHAPTICS_2015:
+      return polhem::kWoodenhaptics2015;
+    case v1::Device::Polhem::ALUHAPTICS_V2:
+      return polhem::kAluhapticsV2;
+    case v1::Device::Polhem::VINTAGE:
+      return polhem::kVintage;
+    default:
+      return polhem::kWoodenhaptics2019;
+  }
+}
+
+std::unique_ptr<Device> make_polhem(const v1::Device& config, Files /*files*/) {
+  const v1::Device::Polhem& polhem = config.polhem();
+  polhem::Joints rest{};
+  for (int i = 0; i < std::min<int>(polhem.rest_counts_size(), 3); ++i) {
+    rest[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(polhem.rest_counts(i));
+  }
+  return polhem::make_polhem({.name = config.name(),
+                              .vendor = static_cast<std::uint16_t>(polhem.usb().vendor()),
+                              .product = static_cast<std::uint16_t>(polhem.usb().product()),
+                              .udp_port = static_cast<std::uint16_t>(polhem.udp().port()),
+                              .world_from_base = base_of(config),
+                              .control = {.model = polhem_model(polhem.model()),
+                                          .rest_counts = rest,
+                                          .calibrate_at_start = polhem.calibrate_at_start(),
+                                          .max_current = polhem.max_current(),
+                                          .max_force = polhem.max_force()}});
+}
+
+std::unique_ptr<Device> make_haply(const v1::Device& config, Files /*files*/) {
+  const bool is_hardware_2 = config.haply().model() == v1::Device::Haply::HARDWARE_2;
+  return haply::make_haply({.name = config.name(),
+                            .port = config.haply().port(),
+                            .wiring = is_hardware_2 ? haply::kWiring2 : haply::kWiring3,
+                            .geometry = is_hardware_2 ? haply::kGeometry2 : haply::kGeometry3,
+                            .max_force = config.haply().max_force(),
+                            .world_from_base = base_of(config)});
 }
 
 constexpr Driver kDrivers[] = {
@@ -36,6 +139,12 @@ constexpr Driver kDrivers[] = {
      &make_simulated},
     {v1::Device::kPlayback, [](const v1::Device& config) { return config.playback().path(); },
      &make_playback},
+    {v1::Device::kFalcon, nullptr, &make_falcon},
+    {v1::Device::kSpacemouse, nullptr, &make_spacemouse},
+    {v1::Device::kHydra, nullptr, &make_hydra},
+    {v1::Device::kFastrak, nullptr, &make_fastrak},
+    {v1::Device::kPolhem, nullptr, &make_polhem},
+    {v1::Device::kHaply, nullptr, &make_haply},
 };
 
 const Driver* find_driver(const v1::Device& config) {
@@ -49,15 +158,21 @@ const Driver* find_driver(const v1::Device& config) {
 
 std::string path_file_of(const v1::Device& config) {
   const Driver* const driver = find_driver(config);
-  return driver != nullptr ? driver->path_file(config) : std::string();
+  return driver != nullptr && driver->path_file != nullptr ? driver->path_file(config) : std::string();
 }
 
-std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path) {
+bool is_computed(const v1::Device& config) {
+  const Driver* const driver = find_driver(config);
+  return driver != nullptr && driver->path_file != nullptr;
+}
+
+std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path,
+                                    const std::string& firmware) {
   const Driver* const driver = find_driver(config);
   if (driver == nullptr) {
-    throw DeviceError("device \"" + config.name() + "\": no driver is named; known are simulated, playback");
+    throw DeviceError("device \"" + config.name() + "\": it names no driver");
   }
-  return driver->make(config, std::move(path));
+  return driver->make(config, {std::move(path), firmware});
 }
 
 }  // namespace haptic::drivers

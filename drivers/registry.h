@@ -16,8 +16,13 @@ namespace haptic::drivers {
 /// The file with the path that the device follows, as the config names it; empty if it follows none.
 std::string path_file_of(const v1::Device& config);
 
-/// A device that is not yet started. `path` holds the rows of path_file_of(). The config must be valid but
-/// for its driver: throws DeviceError if it names none that is known here.
-std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path);
+/// Whether the device is computed, and so runs on a virtual clock too; false for hardware.
+bool is_computed(const v1::Device& config);
+
+/// A device that is not yet started. `path` holds the rows of path_file_of(), `firmware` the bytes that its
+/// driver uploads. The config must be valid and complete but for its driver: throws DeviceError if it names
+/// none that is known here.
+std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path,
+                                    const std::string& firmware = {});
 
 }  // namespace haptic::drivers

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <utility>
 
+#include "load/device_config.h"
 #include "load/error.h"
 #include "load/ranges.h"
 #include "load/scene_report.h"
@@ -58,8 +59,6 @@ std::vector<LoadError> tls_errors(const Report& report, const CheckOptions& opti
   return errors;
 }
 
-std::string driver_of(const v1::Device& device) { return device.has_simulated() ? "simulated" : "playback"; }
-
 std::string address_of(const v1::Listen& listen) {
   if (listen.has_unix()) return listen.unix().path();
   const bool is_six = listen.tcp().address().find(':') != std::string::npos;
@@ -85,9 +84,13 @@ void print(const LoadedConfig& config, std::ostream& out) {
       << to_text(message.safety().max_speed()) << " m/s\n";
   for (int i = 0; i < message.device_size(); ++i) {
     const auto& path = config.paths[static_cast<std::size_t>(i)];
-    out << "  device     " << message.device(i).name() << ": " << driver_of(message.device(i));
+    out << "  device     " << message.device(i).name() << ": " << driver_name(message.device(i));
     if (!path.empty()) {
       out << ", path of " << path.size() << " rows to " << to_text(path.back().time) << " s";
+    }
+    const std::string& firmware = config.firmware[static_cast<std::size_t>(i)];
+    if (!firmware.empty()) {
+      out << ", firmware of " << firmware.size() << " bytes, SHA-256 " << sha256(firmware);
     }
     out << "\n";
   }
@@ -207,7 +210,7 @@ Value json_of(const LoadedConfig& config) {
   fields["devices"] = list_of(config.message.device(), [](const v1::Device& device) {
     Struct one;
     (*one.mutable_fields())["name"] = value_of(device.name());
-    (*one.mutable_fields())["driver"] = value_of(driver_of(device));
+    (*one.mutable_fields())["driver"] = value_of(driver_name(device));
     return one;
   });
   fields["listen"] = list_of(config.message.listen(), address_of);

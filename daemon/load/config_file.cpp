@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "load/device_config.h"
 #include "load/path_file.h"
 #include "load/ranges.h"
 #include "load/read_file.h"
@@ -23,7 +24,7 @@ class ConfigCheck {
   ConfigCheck(v1::DaemonConfig& config, const TextSource& source, const std::filesystem::path& file)
       : config_(config), source_(source), file_(file) {}
 
-  std::vector<std::vector<drivers::PathPoint>> check() {
+  void check(LoadedConfig& loaded) {
     servo(*config_.mutable_servo());
     capacity(*config_.mutable_capacity());
     safety(*config_.mutable_safety());
@@ -31,7 +32,7 @@ class ConfigCheck {
     limits(*config_.mutable_limits());
     drive(*config_.mutable_drive());
     if (!config_.scene().empty()) config_.set_scene(relative_to(file_, config_.scene()).string());
-    return devices();
+    devices(loaded);
   }
 
  private:
@@ -109,13 +110,12 @@ class ConfigCheck {
            [&](double v) { drive.set_heartbeat(v); });
   }
 
-  std::vector<std::vector<drivers::PathPoint>> devices() {
+  void devices(LoadedConfig& loaded) {
     if (config_.device_size() > kMostDevices) {
       source_.fail(item("device", kMostDevices),
                    "is one device too many (permitted: 0 to " + std::to_string(kMostDevices) + ")");
     }
     std::map<std::string, int> names;
-    std::vector<std::vector<drivers::PathPoint>> paths;
     for (int i = 0; i < config_.device_size(); ++i) {
       const std::string field = item("device", i);
       v1::Device& device = *config_.mutable_device(i);
@@ -125,21 +125,22 @@ class ConfigCheck {
         source_.fail(field + ".name",
                      in_quotes(device.name()) + " is also the name of " + item("device", same->second));
       }
-      paths.push_back(driver(field, device));
+      loaded.paths.push_back(path_of(field, device));
+      loaded.firmware.push_back(check_hardware(source_, field, file_, device));
     }
-    return paths;
   }
 
-  std::vector<drivers::PathPoint> driver(const std::string& field, v1::Device& device) {
+  std::vector<drivers::PathPoint> path_of(const std::string& field, v1::Device& device) {
     switch (device.driver_case()) {
       case v1::Device::kSimulated:
         return simulated(field + ".simulated", *device.mutable_simulated());
       case v1::Device::kPlayback:
         return path(field + ".playback.path", *device.mutable_playback()->mutable_path());
       case v1::Device::DRIVER_NOT_SET:
-        break;
+        source_.fail(field, "has no driver (permitted: " + known_drivers() + ")");
+      default:
+        return {};
     }
-    source_.fail(field, "has no driver (permitted: simulated, playback)");
   }
 
   std::vector<drivers::PathPoint> simulated(const std::string& field, v1::Device::Simulated& device) {
@@ -267,8 +268,8 @@ LoadedConfig load_config(const std::filesystem::path& file) {
 LoadedConfig check_config(v1::DaemonConfig message, const TextSource& source,
                           const std::filesystem::path& file) {
   check_values(message, source);
-  LoadedConfig loaded{std::move(message), {}, source};
-  loaded.paths = ConfigCheck(loaded.message, source, file).check();
+  LoadedConfig loaded{std::move(message), {}, {}, source};
+  ConfigCheck(loaded.message, source, file).check(loaded);
   return loaded;
 }
 

@@ -12,6 +12,9 @@
 
 namespace haptic::setup {
 
+/// For the virtual clock: throws load::LoadError, with the place, if a device of the config is hardware.
+void require_computed_devices(const load::LoadedConfig& config);
+
 class DeviceSet {
  public:
   /// Makes the devices. Throws drivers::DeviceError.

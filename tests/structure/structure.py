@@ -79,8 +79,25 @@ ROOMS = {
     ),
     "drivers/device.h": Room(libraries=("glm/",)),
     "drivers": Room(
-        ours=("drivers/device.h", "daemon/rt"),
-        libraries=("glm/", "boost/asio", "fmt/", "posix"),
+        ours=("drivers/device.h", "drivers/io", "daemon/rt"),
+        libraries=("glm/", "fmt/", "posix"),
+    ),
+    # the ways to devices, which know no device
+    "drivers/io/hid": Room(
+        ours=("drivers/device.h", "drivers/device_error.h", "daemon/rt"),
+        libraries=("hidapi/", "posix"),
+    ),
+    "drivers/io/serial": Room(
+        ours=("drivers/device_error.h",),
+        libraries=("boost/asio", "boost/system/", "posix"),
+    ),
+    "drivers/io/udp": Room(
+        ours=("drivers/device_error.h",),
+        libraries=("boost/asio", "boost/system/"),
+    ),
+    "drivers/io/usb": Room(
+        ours=("drivers/device.h", "drivers/device_error.h", "daemon/rt"),
+        libraries=("libusb-1.0/", "posix"),
     ),
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
@@ -181,7 +198,9 @@ def is_build_time(path):
 
 def library_problem(path, room, header):
     if "/" in header or header.endswith((".h", ".hpp")):
-        is_posix = header.endswith(".h") and not header.startswith(("boost/", "google/", "spdlog/", "fmt/", "glm/"))
+        is_posix = header.endswith(".h") and not header.startswith(
+            ("boost/", "google/", "spdlog/", "fmt/", "glm/", "libusb-1.0/", "hidapi/")
+        )
         for allowed in ROOMS[room].libraries:
             if header.startswith(allowed) or (allowed == "posix" and is_posix):
                 return None

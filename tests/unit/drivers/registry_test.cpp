@@ -1,5 +1,7 @@
 #include "drivers/registry.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
 #include <gtest/gtest.h>
 
 namespace haptic::drivers {
@@ -61,6 +63,40 @@ TEST(Registry, MakesAPlaybackDeviceOfItsConfig) {
   ASSERT_TRUE(device->read(0, sample));
   ASSERT_TRUE(device->read(1'250'000'000, sample));
   EXPECT_DOUBLE_EQ(sample.position.x, 0.25) << "the path starts again";
+}
+
+TEST(Registry, MakesAFalconOfItsConfig) {
+  v1::Device config;
+  config.set_name("right");
+  config.mutable_falcon()->set_max_force(2.5);
+  EXPECT_EQ(path_file_of(config), "");
+  const std::unique_ptr<Device> device = make_device(config, {}, "firmware");
+  EXPECT_EQ(device->info().name, "right");
+  EXPECT_EQ(device->info().driver, "falcon");
+  EXPECT_EQ(device->info().max_force, 2.5);
+}
+
+TEST(Registry, EveryDriverOfTheSchemaIsKnown) {
+  const google::protobuf::OneofDescriptor* const drivers =
+      v1::Device::descriptor()->FindOneofByName("driver");
+  for (int i = 0; i < drivers->field_count(); ++i) {
+    v1::Device config;
+    config.set_name("it");
+    config.GetReflection()->MutableMessage(&config, drivers->field(i));
+    const std::unique_ptr<Device> device = make_device(config, {});
+    EXPECT_EQ(device->info().name, "it");
+    EXPECT_EQ(device->info().driver, drivers->field(i)->name());
+  }
+}
+
+TEST(Registry, OnlyWhatFollowsAPathIsComputed) {
+  v1::Device config;
+  config.mutable_simulated();
+  EXPECT_TRUE(is_computed(config));
+  config.mutable_playback();
+  EXPECT_TRUE(is_computed(config));
+  config.mutable_falcon();
+  EXPECT_FALSE(is_computed(config));
 }
 
 TEST(Registry, ADeviceWithoutADriverIsAnErrorThatNamesIt) {

@@ -23,7 +23,9 @@ std::vector<std::filesystem::path> files_of(const std::string& folder, bool scen
 }
 
 TEST(ShippedFiles, EveryConfigLoadsWithItsSceneAndWithoutAWarning) {
-  for (const auto& file : files_of("config", false)) {
+  std::vector<std::filesystem::path> files = files_of("config", false);
+  for (const auto& file : files_of("config/devices", false)) files.push_back(file);
+  for (const auto& file : files) {
     SCOPED_TRACE(file);
     const LoadedConfig config = load_config(file);
     ASSERT_FALSE(config.message.scene().empty());

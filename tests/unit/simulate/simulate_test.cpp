@@ -89,6 +89,17 @@ TEST_F(Simulate, RunsEveryTickUpToTheDuration) {
   }
 }
 
+TEST_F(Simulate, RefusesADeviceThatIsHardwareAndTellsWhere) {
+  folder_.write("config.txtpb", "servo { rate_hz: 1000 }\ndevice { name: \"hand\" falcon {} }\n");
+  try {
+    run(0.01);
+    FAIL() << "no exception";
+  } catch (const load::LoadError& error) {
+    EXPECT_EQ(error.line(), 2u);
+    EXPECT_NE(error.message().find("virtual clock"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(Simulate, ADurationOfZeroIsOneTick) {
   run(0.0);
   EXPECT_EQ(rows("devices.csv").size(), 1u);

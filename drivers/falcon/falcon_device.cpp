@@ -1,0 +1,148 @@
+#include "drivers/falcon/falcon_device.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "drivers/device_error.h"
+#include "drivers/io/usb/usb.h"
+#include "rt/tick_clock.h"
+
+namespace haptic::drivers::falcon {
+
+namespace {
+
+constexpr io::UsbMatch kFalcon{.vendor = 0x0403, .product = 0xcb48};
+constexpr double kRateHz = 1000.0;
+
+// in flight: two to listen, so that one is ready while the other is looked at; three to send, as a packet
+// takes up to 2 ms until its reply is there
+constexpr std::size_t kReads = 2;
+constexpr std::size_t kWrites = 3;
+
+constexpr std::chrono::milliseconds kSendTimeout{1000};
+constexpr int kLastPackets = 8;
+constexpr Nanoseconds kLastPacketsWait = 100'000'000;
+constexpr std::chrono::milliseconds kLastPacketTimeout{20};
+
+class UsbFtdiPort final : public FtdiPort {
+ public:
+  explicit UsbFtdiPort(io::UsbDevice& usb) : usb_(usb) {}
+
+  void control(const FtdiRequest& request) override { usb_.control_out(request.request, request.value, 0); }
+
+  void write(std::span<const std::uint8_t> bytes) override {
+    usb_.bulk_out(kEndpointOut, bytes, kSendTimeout);
+  }
+
+  std::size_t read(std::span<std::uint8_t> bytes, std::chrono::milliseconds timeout) override {
+    const Nanoseconds give_up = rt::monotonic_ns() + std::chrono::nanoseconds(timeout).count();
+    while (waiting_.empty()) {
+      const Nanoseconds left = give_up - rt::monotonic_ns();
+      if (left <= 0) return 0;
+      std::array<std::uint8_t, kUsbPacketBytes> packet{};
+      const std::chrono::milliseconds wait(left / 1'000'000 + 1);
+      const std::size_t count = usb_.bulk_in(kEndpointIn, packet, wait);
+      strip_status(std::span(packet).first(count), [&](std::span<const std::uint8_t> data) {
+        waiting_.insert(waiting_.end(), data.begin(), data.end());
+      });
+    }
+    const std::size_t count = std::min(bytes.size(), waiting_.size());
+    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(count);
+    std::copy(waiting_.begin(), end, bytes.begin());
+    waiting_.erase(waiting_.begin(), end);
+    return count;
+  }
+
+ private:
+  io::UsbDevice& usb_;
+  std::vector<std::uint8_t> waiting_;  // read, but not yet asked for
+};
+
+class FalconRoutine final : public DeviceRoutine {
+ public:
+  explicit FalconRoutine(FalconSettings settings) : settings_(std::move(settings)) {}
+
+  void open() override {
+    io::UsbMatch match = kFalcon;
+    match.serial = settings_.serial;
+    usb_.emplace(match);
+    try {
+      UsbFtdiPort port(*usb_);
+      bring_up(port, settings_.firmware, settings_.boot);
+    } catch (const DeviceError&) {
+      usb_.reset();
+      throw;
+    }
+  }
+
+  void run(DeviceLink& link, const StopFlag& stop) override {
+    FalconControl control(settings_.control);
+    const io::UsbReader reader(
+        *usb_, kEndpointIn, kUsbPacketBytes, kReads,
+        [&](std::span<const std::uint8_t> transfer) { take(control, link, transfer, rt::monotonic_ns()); });
+    io::UsbWriter writer(*usb_, kEndpointOut, kPacketBytes, kWrites);
+    rt::TickSchedule schedule(rt::monotonic_ns(), kRateHz);
+    while (!stop.is_raised() && !usb_->is_gone()) {
+      const Nanoseconds now = rt::monotonic_ns();
+      if (now >= schedule.next_due_ns()) {
+        schedule.advance(now);
+        // if all buffers are in flight the device lags: the next packet will be newer
+        writer.submit(control.next_packet(link.live_force(now), now));
+        if (control.hold(now) == Hold::kNoReply) link.publish_nothing();
+      }
+      usb_->wait(schedule.next_due_ns());
+    }
+    let_go(writer);
+    if (usb_->is_gone()) throw DeviceError("unplugged");
+  }
+
+  void close() noexcept override { usb_.reset(); }
+
+ private:
+  static void take(FalconControl& control, DeviceLink& link, std::span<const std::uint8_t> transfer,
+                   Nanoseconds now) {
+    const std::uint64_t before = control.replies();
+    strip_status(transfer, [&](std::span<const std::uint8_t> data) { control.take(data, now); });
+    if (control.replies() == before) return;
+    if (control.sample()) {
+      link.publish(*control.sample());
+    } else {
+      link.publish_nothing();
+    }
+  }
+
+  /// What the firmware does when packets end is not known: it gets zero force several times, LEDs off.
+  void let_go(io::UsbWriter& writer) noexcept {
+    const Packet nothing = encode({});
+    const Nanoseconds give_up = rt::monotonic_ns() + kLastPacketsWait;
+    int sent = 0;
+    while ((sent < kLastPackets || !writer.is_idle()) && rt::monotonic_ns() < give_up && !usb_->is_gone()) {
+      if (sent < kLastPackets && writer.submit(nothing)) ++sent;
+      usb_->wait(rt::monotonic_ns() + 1'000'000);
+    }
+    if (sent == kLastPackets) return;
+    // a transfer that failed need not mean that the device is out of reach
+    try {
+      for (; sent < kLastPackets; ++sent) usb_->bulk_out(kEndpointOut, nothing, kLastPacketTimeout);
+    } catch (const DeviceError&) {
+      // it is
+    }
+  }
+
+  FalconSettings settings_;
+  std::optional<io::UsbDevice> usb_;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> make_falcon(FalconSettings settings) {
+  DeviceInfo info{.name = settings.name, .driver = "falcon", .max_force = settings.control.max_force};
+  const BasePose base = settings.world_from_base;
+  return std::make_unique<ThreadedDevice>(std::move(info), base,
+                                          std::make_unique<FalconRoutine>(std::move(settings)));
+}
+
+}  // namespace haptic::drivers::falcon
