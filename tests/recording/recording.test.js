@@ -292,7 +292,8 @@ describe("a recording of the daemon", () => {
 
     const { topics } = await readIndexed(readFileSync(file));
     const lost = new Set();
-    for (const { value } of topics.get("/haptic/gaps")) {
+    const inputs = 6; // haptic.v1.INPUTS is another subscription
+    for (const { value } of topics.get("/haptic/gaps").filter((gap) => !gap.value.topic.includes(inputs))) {
       for (let i = Number(value.first_sequence); i <= Number(value.last_sequence); ++i) {
         lost.add(i);
       }
