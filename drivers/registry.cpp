@@ -25,7 +25,7 @@ struct Files {
 struct Driver {
   v1::Device::DriverCase driver;
   std::string (*path_file)(const v1::Device& config);  // none: hardware, which follows no path
-  std::unique_ptr<Device> (*make)(const v1::Device& config, Files files);
+  std::unique_ptr<Device> (*make)(const v1::Device& config, const Files& files);
 };
 
 BasePose base_of(const v1::Device& config) {
@@ -36,23 +36,23 @@ BasePose base_of(const v1::Device& config) {
           .orientation = {turn.w(), turn.x(), turn.y(), turn.z()}};
 }
 
-std::unique_ptr<Device> make_simulated(const v1::Device& config, Files files) {
+std::unique_ptr<Device> make_simulated(const v1::Device& config, const Files& files) {
   const v1::Device::Simulated& simulated = config.simulated();
   SimulatedSettings settings{.name = config.name(),
                              .mass = simulated.mass(),
                              .damping = simulated.damping(),
                              .hand_stiffness = simulated.hand().stiffness(),
                              .hand_damping = simulated.hand().damping(),
-                             .path = std::move(files.path),
+                             .path = files.path,
                              .repeat = simulated.hand().repeat()};
   return std::make_unique<SimulatedDevice>(std::move(settings));
 }
 
-std::unique_ptr<Device> make_playback(const v1::Device& config, Files files) {
-  return std::make_unique<PlaybackDevice>(config.name(), std::move(files.path), config.playback().repeat());
+std::unique_ptr<Device> make_playback(const v1::Device& config, const Files& files) {
+  return std::make_unique<PlaybackDevice>(config.name(), files.path, config.playback().repeat());
 }
 
-std::unique_ptr<Device> make_falcon(const v1::Device& config, Files files) {
+std::unique_ptr<Device> make_falcon(const v1::Device& config, const Files& files) {
   const v1::Device::Falcon& falcon = config.falcon();
   return falcon::make_falcon({.name = config.name(),
                               .serial = falcon.serial(),
@@ -61,7 +61,7 @@ std::unique_ptr<Device> make_falcon(const v1::Device& config, Files files) {
                               .control = {.gain = falcon.gain(), .max_force = falcon.max_force()}});
 }
 
-std::unique_ptr<Device> make_spacemouse(const v1::Device& config, Files /*files*/) {
+std::unique_ptr<Device> make_spacemouse(const v1::Device& config, const Files& /*files*/) {
   const v1::Device::Spacemouse& spacemouse = config.spacemouse();
   const auto sign = [&](const char* axis) {
     const auto& inverted = spacemouse.inverted();
@@ -77,12 +77,12 @@ std::unique_ptr<Device> make_spacemouse(const v1::Device& config, Files /*files*
                                                  .rotation_signs = {sign("rx"), sign("ry"), sign("rz")}}});
 }
 
-std::unique_ptr<Device> make_hydra(const v1::Device& config, Files /*files*/) {
+std::unique_ptr<Device> make_hydra(const v1::Device& config, const Files& /*files*/) {
   return hydra::make_hydra(
       {.name = config.name(), .wand = config.hydra().wand(), .world_from_base = base_of(config)});
 }
 
-std::unique_ptr<Device> make_fastrak(const v1::Device& config, Files /*files*/) {
+std::unique_ptr<Device> make_fastrak(const v1::Device& config, const Files& /*files*/) {
   const v1::Device::Fastrak& fastrak = config.fastrak();
   const v1::Vector3& towards = fastrak.hemisphere();
   return fastrak::make_fastrak({.name = config.name(),
@@ -106,7 +106,7 @@ const polhem::Model& polhem_model(v1::Device::Polhem::Model model) {
   }
 }
 
-std::unique_ptr<Device> make_polhem(const v1::Device& config, Files /*files*/) {
+std::unique_ptr<Device> make_polhem(const v1::Device& config, const Files& /*files*/) {
   const v1::Device::Polhem& polhem = config.polhem();
   polhem::Joints rest{};
   for (int i = 0; i < std::min<int>(polhem.rest_counts_size(), 3); ++i) {
@@ -124,7 +124,7 @@ std::unique_ptr<Device> make_polhem(const v1::Device& config, Files /*files*/) {
                                           .max_force = polhem.max_force()}});
 }
 
-std::unique_ptr<Device> make_haply(const v1::Device& config, Files /*files*/) {
+std::unique_ptr<Device> make_haply(const v1::Device& config, const Files& /*files*/) {
   const bool is_hardware_2 = config.haply().model() == v1::Device::Haply::HARDWARE_2;
   return haply::make_haply({.name = config.name(),
                             .port = config.haply().port(),

@@ -19,7 +19,7 @@ inline constexpr std::array<std::string_view, 4> kFeatures = {
     "subscribe.filter",    // Subscribe.finger, object, only_in_contact
     "subscribe.delivery",  // Subscribe.delivery, Envelope.batch, ticks and topics in Gap
     "subscribe.events",    // topics EVENTS and STATS
-    "replay",              // topic INPUTS, GetState, GetScene.embed_meshes and revision, SceneDescription.carry
+    "replay",  // topic INPUTS, GetState, GetScene.embed_meshes and revision, SceneDescription.carry
 };
 
 /// The largest message that the daemon accepts from a peer that has not said Hello.

@@ -31,7 +31,7 @@ using MessagePtr = std::unique_ptr<natsMsg, Delete>;
 
 // the status, and what is known of it beside; without the place in the library's source
 std::string words(natsStatus status) {
-  const std::string text = natsStatus_GetText(status);
+  std::string text = natsStatus_GetText(status);
   natsStatus last = NATS_OK;
   const char* const known = nats_GetLastError(&last);
   if (last != status || known == nullptr) {
