@@ -1,6 +1,7 @@
 #include "drivers/external/external_device.h"
 
 #include <poll.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,9 @@ namespace haptic::drivers::external {
 
 namespace {
 
-constexpr int kLookMs = 20;                   // for a stop, silence, and who waits
+constexpr int kLookMs = 20;  // for a stop, silence, and who waits
+// after each look: this thread goes before the servo's, and a program that never stops sending must not
+constexpr timespec kBreath{0, 100'000};
 constexpr std::size_t kLongestMessage = 256;  // what is longer is cut, and still too long
 constexpr int kMostAtOnce = 16;               // messages before others are looked at
 
@@ -35,11 +38,11 @@ class ExternalRoutine final : public DeviceRoutine {
     while (!stop.is_raised()) {
       std::array<pollfd, 2> ready{pollfd{listener_->get(), POLLIN, 0}, pollfd{peer_.get(), POLLIN, 0}};
       // a program that must wait a little stays in the listener's queue
-      const bool waits = !peer_ && rt::monotonic_ns() < open_from_;
-      if (waits) ready[0].fd = -1;
+      if (is_closed()) ready[0].fd = -1;
       ::poll(ready.data(), ready.size(), kLookMs);
       if (ready[1].revents != 0) converse(link);
-      if (ready[0].revents != 0) admit();
+      if (ready[0].revents != 0 && !is_closed()) admit();
+      if (ready[0].revents != 0 || ready[1].revents != 0) ::nanosleep(&kBreath, nullptr);
       if (peer_ && rt::monotonic_ns() - last_heard_ > nanoseconds(kSilence)) refuse(link, HAPTIC_SILENT);
     }
     if (peer_) refuse(link, HAPTIC_STOPPED);
@@ -51,6 +54,8 @@ class ExternalRoutine final : public DeviceRoutine {
   }
 
  private:
+  bool is_closed() const noexcept { return !peer_ && rt::monotonic_ns() < open_from_; }
+
   void admit() noexcept {
     Descriptor newcomer = listener_->accept();
     if (!newcomer) return;
