@@ -4,7 +4,7 @@
 usage: generate.py --hapticd FILE --hapticctl FILE --haptic-bridge FILE [--check]
 
 man/source/PAGE holds the prose of each page in troff. A line of it that begins with @ is replaced:
-  @verbs PROGRAM           each verb of hapticd or hapticctl with its options, from --help
+  @verbs PROGRAM           each verb of hapticd or hapticctl with its arguments and options, from --help
   @options PROGRAM         each option of a program without verbs, from --help
   @messages FILE NAME...   the fields of these messages of proto/haptic/v1/FILE, with those inside, from its comments
   @header NAME SECTION     the title line, with the program's version
@@ -60,8 +60,10 @@ def footer(help_text):
 
 def is_common(program, option):
     """Whether a page tells of the option once for all verbs."""
-    common = ("-h,--help", "--version", "--json", "--socket") if "hapticctl" in Path(program).name else ("-h,--help",)
-    return option.startswith(common)
+    common = {"-h,--help"}
+    if Path(program).name == "hapticctl":
+        common |= {"--version", "--json", "--socket", "--server", "--certificate", "--key", "--authority"}
+    return option.split()[0] in common
 
 
 def option_lines(name, meaning):
@@ -70,6 +72,13 @@ def option_lines(name, meaning):
     name = re.sub(r" (Needs|Excludes):.*| x \d+.*| \(Env:.*", "", name)
     meaning = re.sub(r" ?(Needs|Excludes):( --?[\w-]+)+", "", " " + meaning).strip()
     return [".TP", "\\fB" + troff(name).replace(" ", "\\fR ", 1) + ("" if " " in name else "\\fR"), troff(meaning)]
+
+
+def argument_lines(name, meaning):
+    """One argument that is told by its place: its name, and what it may be where the help lists that."""
+    word, *kind = re.sub(r" REQUIRED| \.\.\.", "", name).split()
+    choices = " " + " ".join(kind) if "|" in "".join(kind) else ""
+    return [".TP", f"\\fI{troff(word)}\\fR{troff(choices)}", troff(meaning)]
 
 
 def options_page(program):
@@ -92,12 +101,15 @@ def verb_page(program, path, text, common_footer):
             for name, _ in entries(help_text, "Positionals")
         )
         lines += [".TP", f"\\fB{troff(' '.join(path))}\\fR {troff(arguments)}".rstrip(), troff(text[:1].upper() + text[1:]) + "."]
+        told = [(name, meaning) for name, meaning in entries(help_text, "Positionals") if meaning]
         options = [pair for pair in entries(help_text, "Options") if not is_common(program, pair[0])]
-        if options:
+        if told or options:
             lines.append(".RS")
+        for name, meaning in told:
+            lines += argument_lines(name, meaning)
         for name, meaning in options:
             lines += option_lines(name, meaning)
-        if options:
+        if told or options:
             lines.append(".RE")
     for name, meaning in below:
         lines += verb_page(program, [*path, name], meaning, common_footer)

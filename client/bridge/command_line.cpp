@@ -84,11 +84,9 @@ void add_stream_options(CLI::App& app, Choice& choice) {
           },
           ""))
       ->type_name("NAME");
-  const std::map<std::string, v1::Topic> topics = {{"objects", v1::OBJECTS},
-                                                   {"hips", v1::HIPS},
-                                                   {"devices", v1::DEVICES},
-                                                   {"events", v1::EVENTS},
-                                                   {"stats", v1::STATS}};
+  const std::map<std::string, v1::Topic> topics = {{"objects", v1::OBJECTS}, {"hips", v1::HIPS},
+                                                   {"devices", v1::DEVICES}, {"events", v1::EVENTS},
+                                                   {"stats", v1::STATS},     {"inputs", v1::INPUTS}};
   app.add_option("--topic", options.topics, "objects, hips, devices, events, stats; default: all of them")
       ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
       ->type_name("TOPIC")

@@ -43,6 +43,8 @@ std::string_view topic_name(v1::Topic topic) {
       return "events";
     case v1::STATS:
       return "stats";
+    case v1::INPUTS:
+      return "inputs";
     default:
       return {};
   }

@@ -40,11 +40,13 @@ complete -F _hapticctl hapticctl
 
 void collect(const CLI::App& app, const std::string& path, std::vector<CompletedVerb>& verbs) {
   const std::size_t mine = verbs.size();
-  verbs.push_back({path, app.get_description(), {}, {}, ""});
+  verbs.push_back({path, app.get_description(), {}, {}, "", ""});
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional()) {
       if (verbs[mine].value.empty()) {
         verbs[mine].value = option->get_type_name();
+      } else if (verbs[mine].next_value.empty() && verbs[mine].value.find('|') != std::string::npos) {
+        verbs[mine].next_value = option->get_type_name();
       }
       continue;
     }
@@ -88,6 +90,12 @@ bool has_names(const std::string& kind) {
   return kind == "OBJECT" || kind == "FINGER" || kind == "DEVICE" || kind == "MATERIAL";
 }
 
+std::string after_choice(const CompletedVerb& verb, const std::string& no_list) {
+  return verb.next_value.empty() ? ""
+                                 : fmt::format("; case $before in {}) kind='{}' {} ;; esac", verb.value,
+                                               verb.next_value, no_list);
+}
+
 std::string bash_completion(const std::vector<CompletedVerb>& verbs) {
   std::string text = kBashHead;
   for (const CompletedVerb& verb : verbs) {
@@ -115,8 +123,8 @@ std::string bash_completion(const std::vector<CompletedVerb>& verbs) {
       words += (words.empty() ? "" : " ") + last_word(below);
     }
     text += fmt::format("        '{}/-'*) list='{}' ;;\n", verb.path, options);
-    text += fmt::format("        '{}/'*) kind='{}' list='{}' ;;\n", verb.path,
-                        choices(verb.value).empty() ? verb.value : "", words);
+    text += fmt::format("        '{}/'*) kind='{}' list='{}'{} ;;\n", verb.path,
+                        choices(verb.value).empty() ? verb.value : "", words, after_choice(verb, "list="));
   }
   return text + "      esac\n      ;;\n  esac" + kBashTail;
 }

@@ -19,7 +19,8 @@ struct CompletedVerb {
   std::string help;
   std::vector<std::string> verbs;  // the paths of those below
   std::vector<CompletedOption> options;
-  std::string value;  // the kind of its first argument without a dash
+  std::string value;       // the kind of its first argument without a dash
+  std::string next_value;  // of its second, if the first is one of some words
 };
 
 /// All verbs that help shows, each before those below it.
@@ -31,6 +32,10 @@ std::string last_word(const std::string& path);
 /// Whether __names knows the kind: OBJECT, FINGER, DEVICE, MATERIAL. The other kinds that can be completed
 /// are FILE, and words with | between them.
 bool has_names(const std::string& kind);
+
+/// For bash and zsh: after a word of the first argument the kind is that of the second, and `no_list` is
+/// done. Empty if there is no second.
+std::string after_choice(const CompletedVerb& verb, const std::string& no_list);
 
 std::string bash_completion(const std::vector<CompletedVerb>& verbs);
 std::string zsh_completion(const std::vector<CompletedVerb>& verbs);

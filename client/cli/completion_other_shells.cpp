@@ -18,18 +18,18 @@ _hapticctl() {
     case "$verb/$before" in
 )shell";
 
+// without the two characters ) and " side by side, which clang-format takes for the string's end
 constexpr const char* kZshTail = R"shell(
   case $kind in
     FILE) _files ;;
     OBJECT | FINGER | DEVICE | MATERIAL)
-      names=(${(f)" $(${words[1]} __names $kind $socket 2 > / dev / null) "})
-                                 compadd -
-                                 a names;
-;
-esac((${#list})) && _describe - o hapticctl list
+      names=("${(@f)$(${words[1]} __names $kind $socket 2>/dev/null)}")
+      [[ -n $names[1] ]] && compadd -a names
+      ;;
+  esac
+  ((${#list})) && _describe hapticctl list
 }
-if
-  [[$funcstack [1] == _hapticctl]]; then
+if [[ $funcstack[1] == _hapticctl ]]; then
   _hapticctl "$@"
 else
   compdef _hapticctl hapticctl
@@ -154,8 +154,8 @@ std::string zsh_completion(const std::vector<CompletedVerb>& verbs) {
   text += "    *)\n      case \"$verb/$word\" in\n";
   for (const CompletedVerb& verb : verbs) {
     text += fmt::format("        '{}/-'*) list=({}) ;;\n", verb.path, zsh_list(verbs, verb, true));
-    text += fmt::format("        '{}/'*) kind='{}' list=({}) ;;\n", verb.path, verb.value,
-                        zsh_list(verbs, verb, false));
+    text += fmt::format("        '{}/'*) kind='{}' list=({}){} ;;\n", verb.path, verb.value,
+                        zsh_list(verbs, verb, false), after_choice(verb, "list=()"));
   }
   return text + "      esac\n      ;;\n  esac" + kZshTail;
 }
@@ -173,8 +173,10 @@ std::string fish_completion(const std::vector<CompletedVerb>& verbs) {
     for (const std::string& below : verb.verbs) {
       text += fmt::format("{} -a {} -d {}\n", here, last_word(below), fish_quoted(help_of(verbs, below)));
     }
-    if (const std::string value = fish_value(verb.value); !value.empty()) {
-      text += here + value + "\n";
+    for (const std::string& kind : {verb.value, verb.next_value}) {
+      if (const std::string value = fish_value(kind); !value.empty()) {
+        text += here + value + "\n";
+      }
     }
     for (const CompletedOption& option : verb.options) {
       text += here + fish_option(option) + "\n";

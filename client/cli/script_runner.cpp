@@ -4,7 +4,9 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "client/cli/screen.h"
@@ -33,6 +35,12 @@ client::Clock::time_point in(double seconds) {
 milliseconds piece_until(client::Clock::time_point deadline) {
   const auto left = std::chrono::ceil<milliseconds>(deadline - client::Clock::now());
   return std::clamp(left, milliseconds(0), milliseconds(100));
+}
+
+// what works on files
+bool needs_no_daemon(std::string_view verb) {
+  constexpr std::array<std::string_view, 5> kVerbs{"export", "info", "plot", "recover", "replay"};
+  return std::find(kVerbs.begin(), kVerbs.end(), verb) != kVerbs.end();
 }
 
 }  // namespace
@@ -156,9 +164,18 @@ ExitCode ScriptRunner::run_verb(const VerbStep& step) {
   Command verb = command_;
   parse_verb(step.words, verb);
   take_lease(step.verb);
-  const ExitCode code = verb.action(verb);
+  const ExitCode code = needs_no_daemon(step.verb) ? run_beside(std::move(verb)) : verb.action(verb);
   std::fflush(stdout);
   return code;
+}
+
+// heartbeats go out while a long file is worked on
+ExitCode ScriptRunner::run_beside(Command verb) {
+  BackgroundVerb running(std::move(verb));
+  while (!running.has_ended_within(milliseconds(0))) {
+    pass(kLook);
+  }
+  return running.result();
 }
 
 ExitCode ScriptRunner::start(const StartStep& step) {

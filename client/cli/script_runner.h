@@ -35,6 +35,7 @@ class ScriptRunner {
   ExitCode wait_until(const WaitUntilStep& step);
   ExitCode expect(const ExpectStep& step);
   ExitCode run_verb(const VerbStep& step);
+  ExitCode run_beside(Command verb);
   ExitCode start(const StartStep& step);
   ExitCode stop();
   ExitCode end_background();

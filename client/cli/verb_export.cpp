@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "client/cli/describe.h"
+#include "client/cli/time_option.h"
 #include "client/cli/verbs.h"
 #include "client/export/export.h"
 #include "proto/csv/csv_file.h"
@@ -21,9 +23,8 @@ using exporting::Topic;
 struct ExportOptions {
   std::string recording;
   std::vector<Topic> topics;
-  double from = 0.0;  // s since the recording's start
-  double to = 0.0;
-  bool has_to = false;
+  std::optional<double> from;  // s since the recording's start
+  std::optional<double> to;
   std::string output;
   bool force = false;
 };
@@ -56,11 +57,11 @@ void report(const Command& command, const ExportOptions& options,
 
 ExitCode write_tables(const Command& command, const ExportOptions& options) {
   exporting::Plan plan{.topics = options.topics,
-                       .from_ns = nanoseconds_of(options.from),
+                       .from_ns = nanoseconds_of(options.from.value_or(0.0)),
                        .file = options.output,
                        .format = options.output.ends_with(".csv") ? Format::kCsv : Format::kHdf5};
-  if (options.has_to) {
-    plan.to_ns = nanoseconds_of(options.to);
+  if (options.to) {
+    plan.to_ns = nanoseconds_of(*options.to);
   }
   const recording::FileSource source(options.recording);
   const recording::Recording recording(source);
@@ -78,8 +79,9 @@ ExitCode run_export(const Command& command, const ExportOptions& options) {
   if (options.output.ends_with(".csv") && options.topics.size() != 1) {
     return complain(kUsage, "a CSV file holds one topic: choose it by --topic, or export to a .h5");
   }
-  if (options.has_to && options.to <= options.from) {
-    return complain(kUsage, fmt::format("--to {} is not after --from {}", options.to, options.from));
+  if (options.to && *options.to <= options.from.value_or(0.0)) {
+    return complain(kUsage,
+                    fmt::format("--to {} is not after --from {}", *options.to, options.from.value_or(0.0)));
   }
   if (!options.force && std::filesystem::exists(options.output)) {
     return complain(kFailed, options.output + " is there already; --force replaces it");
@@ -91,25 +93,6 @@ ExitCode run_export(const Command& command, const ExportOptions& options) {
   } catch (const recording::FormatError& error) {
     return complain(kFailed, options.recording + ": " + error.what());
   }
-}
-
-// "2s", "2" or "200ms"
-std::string to_seconds(std::string& text) {
-  std::string number = text;
-  double unit = 1.0;
-  if (number.ends_with("ms")) {
-    number.resize(number.size() - 2);
-    unit = 1e-3;
-  } else if (number.ends_with("s")) {
-    number.pop_back();
-  }
-  double value = 0.0;
-  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value < 0.0 ||
-      value * unit > 1e9) {
-    return "'" + text + "' is no time: 2s, 2 or 200ms is expected";
-  }
-  text = fmt::format("{}", value * unit);
-  return "";
 }
 
 }  // namespace
@@ -130,14 +113,8 @@ void add_export(CLI::App& app, Command& command) {
       ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
       ->type_name("TOPIC")
       ->delimiter(',');
-  const CLI::Validator time(to_seconds, "");
-  verb->add_option("--from", options->from, "only what is so long after the recording's start, or later")
-      ->transform(time)
-      ->type_name("TIME");
-  verb->add_option("--to", options->to, "only what is before that")
-      ->transform(time)
-      ->type_name("TIME")
-      ->each([options](const std::string& /*text*/) { options->has_to = true; });
+  add_time(*verb, "--from", options->from, "only what is so long after the recording's start, or later");
+  add_time(*verb, "--to", options->to, "only what is before that");
   verb->add_option("-o,--output", options->output,
                    "a .csv, which holds one topic, or a .h5, with a group for each")
       ->required()

@@ -20,6 +20,9 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using recording::FileSink;
 
+// what has happened before the end is taken for so long
+constexpr std::chrono::seconds kDrain{2};
+
 // a chunk is written at least so often, and the line on the terminal
 constexpr std::chrono::milliseconds kPeriod{500};
 
@@ -58,6 +61,7 @@ class Recorder {
     try {
       begin();
       record();
+      drain();
     } catch (const std::exception&) {
       failure = std::current_exception();
     }
@@ -142,6 +146,21 @@ class Recorder {
     }
   }
 
+  // Frames wait on both sides of the socket: all of the ticks up to now belong to the recording.
+  void drain() {
+    const auto is_of_ticks = [](v1::Topic topic) { return topic != v1::EVENTS && topic != v1::STATS; };
+    if (std::none_of(options_.topics.begin(), options_.topics.end(), is_of_ticks)) {
+      return;
+    }
+    const v1::Response status = call(daemon_, [](v1::Request& request) { request.mutable_get_status(); });
+    const SteadyClock::time_point deadline = SteadyClock::now() + kDrain;
+    while (tick_ + options_.decimation <= status.status().tick() && SteadyClock::now() < deadline) {
+      if (const auto message = daemon_.receive(std::chrono::milliseconds(20))) {
+        take(*message);
+      }
+    }
+  }
+
   void take(const v1::Envelope& message) {
     bool taken = false;
     if (inputs_) {
@@ -153,6 +172,9 @@ class Recorder {
     if (message.has_frame() && message.frame().subscription() == subscription_) {
       const v1::Frame& frame = message.frame();
       time_ = frame.realtime_ns();
+      if (!frame.has_event() && !frame.has_stats()) {
+        tick_ = frame.tick();
+      }
       if (!scene_revision_ || frame.scene_revision() > *scene_revision_) {
         write_scene(frame.scene_revision());
       }
@@ -251,7 +273,8 @@ class Recorder {
   std::string not_replayable_;  // why; empty: it is
   std::uint32_t subscription_ = 0;
   std::optional<std::uint64_t> scene_revision_;
-  std::uint64_t time_ = 0;  // of the newest frame, ns
+  std::uint64_t tick_ = 0;  // of the newest frame
+  std::uint64_t time_ = 0;  // likewise, ns
   double seconds_ = 0.0;
   Counts counts_;
   Counts shown_;

@@ -41,11 +41,12 @@ Contents contents_of(const Recording& recording) {
   for (auto messages = recording.messages({.topics = {recording::kGapsTopic}}); messages.next();) {
     v1::Gap gap;
     messages.parse(gap);
-    ++contents.gaps;
-    contents.lost_frames += gap.last_sequence() - gap.first_sequence() + 1;
     const bool is_of_inputs =
         std::find(gap.topic().begin(), gap.topic().end(), v1::INPUTS) != gap.topic().end();
-    if (is_of_inputs && !contents.has_lost_inputs) {
+    if (!is_of_inputs) {
+      ++contents.gaps;
+      contents.lost_frames += gap.last_sequence() - gap.first_sequence() + 1;
+    } else if (!contents.has_lost_inputs) {
       contents.lost_inputs = gap;
       contents.has_lost_inputs = true;
     }

@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "client/export/csv_table.h"
-#include "client/export/frame_rows.h"
 #include "client/export/hdf5_table.h"
 #include "proto/recording/error.h"
 #include "proto/recording/session.h"
@@ -21,25 +20,6 @@ using recording::Recording;
 
 constexpr Topic kTopics[] = {Topic::kHips,   Topic::kObjects, Topic::kDevices, Topic::kContacts,
                              Topic::kEvents, Topic::kStats,   Topic::kGaps};
-
-std::string channel_of(Topic topic) {
-  switch (topic) {
-    case Topic::kHips:
-    case Topic::kContacts:
-      return recording::channel_of(v1::HIPS);
-    case Topic::kObjects:
-      return recording::channel_of(v1::OBJECTS);
-    case Topic::kDevices:
-      return recording::channel_of(v1::DEVICES);
-    case Topic::kEvents:
-      return recording::channel_of(v1::EVENTS);
-    case Topic::kStats:
-      return recording::channel_of(v1::STATS);
-    case Topic::kGaps:
-      break;
-  }
-  return recording::kGapsTopic;
-}
 
 std::optional<recording::Metadata> session_of(const Recording& recording) {
   return recording.find_metadata(recording::kSessionMetadata);
@@ -58,24 +38,6 @@ double rate_of(const std::optional<recording::Metadata>& session) {
         "the recording does not tell the rate of its ticks; hapticd has not made it");
   }
   return rate_hz;
-}
-
-Naming naming_of(const Recording& recording, double rate_hz) {
-  Naming naming;
-  naming.rate_hz = rate_hz;
-  for (auto messages = recording.messages({.topics = {recording::kSceneTopic}}); messages.next();) {
-    v1::SceneDescription scene;
-    messages.parse(scene);
-    naming.scenes[scene.revision()] = std::move(scene);
-  }
-  v1::DeviceList devices;
-  if (auto messages = recording.messages({.topics = {recording::kDevicesTopic}}); messages.next()) {
-    messages.parse(devices);
-  }
-  for (const v1::DeviceStatus& device : devices.device()) {
-    naming.devices.push_back(device.description().name());
-  }
-  return naming;
 }
 
 // hands everything on, and counts rows
@@ -165,6 +127,43 @@ void describe(const recording::Metadata& session, double rate_hz, Hdf5File& file
 
 }  // namespace
 
+std::string channel_of(Topic topic) {
+  switch (topic) {
+    case Topic::kHips:
+    case Topic::kContacts:
+      return recording::channel_of(v1::HIPS);
+    case Topic::kObjects:
+      return recording::channel_of(v1::OBJECTS);
+    case Topic::kDevices:
+      return recording::channel_of(v1::DEVICES);
+    case Topic::kEvents:
+      return recording::channel_of(v1::EVENTS);
+    case Topic::kStats:
+      return recording::channel_of(v1::STATS);
+    case Topic::kGaps:
+      break;
+  }
+  return recording::kGapsTopic;
+}
+
+Naming naming_of(const Recording& recording) {
+  Naming naming;
+  naming.rate_hz = rate_of(session_of(recording));
+  for (auto messages = recording.messages({.topics = {recording::kSceneTopic}}); messages.next();) {
+    v1::SceneDescription scene;
+    messages.parse(scene);
+    naming.scenes[scene.revision()] = std::move(scene);
+  }
+  v1::DeviceList devices;
+  if (auto messages = recording.messages({.topics = {recording::kDevicesTopic}}); messages.next()) {
+    messages.parse(devices);
+  }
+  for (const v1::DeviceStatus& device : devices.device()) {
+    naming.devices.push_back(device.description().name());
+  }
+  return naming;
+}
+
 std::vector<Topic> topics_in(const Recording& recording) {
   std::vector<Topic> topics;
   for (const Topic topic : kTopics) {
@@ -185,8 +184,7 @@ std::vector<std::pair<Topic, std::uint64_t>> export_tables(const Recording& reco
   }
   const std::vector<Topic>& topics = plan.topics.empty() ? available : plan.topics;
   const std::optional<recording::Metadata> session = session_of(recording);
-  const double rate_hz = rate_of(session);
-  const Naming naming = naming_of(recording, rate_hz);
+  const Naming naming = naming_of(recording);
 
   std::vector<std::pair<Topic, std::uint64_t>> rows;
   const Draft draft(plan.file);
@@ -196,7 +194,7 @@ std::vector<std::pair<Topic, std::uint64_t>> export_tables(const Recording& reco
                                   std::make_unique<CsvTable>(draft.name(), columns_of(topic))));
   } else {
     Hdf5File file(draft.name());
-    describe(*session, rate_hz, file);
+    describe(*session, naming.rate_hz, file);
     for (const Topic topic : topics) {
       rows.emplace_back(topic, fill(recording, plan, topic, naming,
                                     file.add_table(std::string(name_of(topic)), columns_of(topic))));

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/export/frame_rows.h"
 #include "client/export/tables.h"
 #include "proto/recording/recording.h"
 
@@ -30,6 +31,13 @@ class Missing : public std::runtime_error {
 
 /// The topics of which the recording has a channel.
 std::vector<Topic> topics_in(const recording::Recording& recording);
+
+/// Where messages of a topic are in a recording.
+std::string channel_of(Topic topic);
+
+/// What the indices in the recording's frames mean. Throws recording::FormatError, e.g. if the recording does
+/// not tell the rate of its ticks, and recording::IoError.
+Naming naming_of(const recording::Recording& recording);
 
 /// Writes plan.file, of which nothing is seen before it is whole. Returns the rows of each topic. Throws
 /// Missing, recording::FormatError, recording::IoError and csv::OutputError; then the file is as it was.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <utility>
 
@@ -19,8 +18,6 @@ constexpr double kNoForce = 1e-9;  // N
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPoints = 1000;  // of a curve; a picture is not wider
 
-using Vector = std::array<double, 3>;
-
 [[noreturn]] void fail(const std::string& file, const std::string& message) {
   v1::Error error;
   error.set_code(v1::Error::INVALID);
@@ -32,30 +29,11 @@ using Vector = std::array<double, 3>;
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 double length(const Vector& a) { return std::sqrt(dot(a, a)); }
 
-// the forces of one finger, device or object, summed for each time
-using Forces = std::map<double, Vector>;
-
-// by name
-std::map<std::string, Forces> forces_of(const Csv& table, const std::string& who, const std::string& prefix) {
-  const std::size_t time = table.column("time");
-  const std::size_t name = table.column(who);
-  const std::array<std::size_t, 3> force = {table.column(prefix + "x"), table.column(prefix + "y"),
-                                            table.column(prefix + "z")};
-  std::map<std::string, Forces> out;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    Vector& sum = out[table.text(row, name)][table.number(row, time)];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      sum[axis] += table.number(row, force[axis]);
-    }
-  }
-  return out;
-}
-
 template <class Value>
-Picture over_time(const std::map<std::string, Forces>& all, Value value) {
+Picture over_time(const Forces& all, Value value) {
   Picture picture;
   picture.x_axis = "time [s]";
-  for (const auto& [name, forces] : all) {
+  for (const auto& [name, forces] : all.by_name) {
     Series series{.name = name, .x = {}, .y = {}};
     series.x.reserve(forces.size());
     series.y.reserve(forces.size());
@@ -93,24 +71,25 @@ std::string state_name(v1::ConstraintState state) {
 
 }  // namespace
 
-Picture force(const Csv& table) {
-  const bool is_hips = table.has("finger");
-  const bool is_devices = !is_hips && table.has("device");
-  Picture picture = over_time(forces_of(table,
-                                        is_hips      ? "finger"
-                                        : is_devices ? "device"
-                                                     : "object",
-                                        is_hips ? "force_" : "f"),
-                              length);
-  picture.title = is_hips      ? "Force of each finger, before the guard"
-                  : is_devices ? "Force of each device, behind the guard"
-                               : "Force on each object";
+Picture force(const Forces& forces) {
+  Picture picture = over_time(forces, length);
+  switch (forces.of) {
+    case Forces::Of::kFingers:
+      picture.title = "Force of each finger, before the guard";
+      break;
+    case Forces::Of::kDevices:
+      picture.title = "Force of each device, behind the guard";
+      break;
+    case Forces::Of::kObjects:
+      picture.title = "Force on each object";
+      break;
+  }
   picture.y_axis = "|F| [N]";
   return picture;
 }
 
-Picture friction(const Csv& hips, const std::array<double, 3>& normal) {
-  Picture picture = over_time(forces_of(hips, "finger", "force_"), [&normal](const Vector& sum) {
+Picture friction(const Forces& fingers, const Vector& normal) {
+  Picture picture = over_time(fingers, [&normal](const Vector& sum) {
     const double along = dot(sum, normal);
     const Vector across = {sum[0] - along * normal[0], sum[1] - along * normal[1],
                            sum[2] - along * normal[2]};
@@ -121,38 +100,19 @@ Picture friction(const Csv& hips, const std::array<double, 3>& normal) {
   return picture;
 }
 
-Picture hips(const Csv& hips, std::optional<double> time) {
-  const std::size_t when = hips.column("time");
-  const std::size_t finger = hips.column("finger");
-  const std::size_t hip = hips.column("hip");
-  const std::array<std::size_t, 3> force = {hips.column("force_x"), hips.column("force_y"),
-                                            hips.column("force_z")};
-  double last = -std::numeric_limits<double>::infinity();
-  for (std::size_t row = 0; row < hips.rows(); ++row) {
-    const double at = hips.number(row, when);
-    last = at > last && (!time || at <= *time) ? at : last;
-  }
-  std::map<std::string, std::map<double, Vector>> sums;
-  for (std::size_t row = 0; row < hips.rows(); ++row) {
-    if (hips.number(row, when) == last) {
-      Vector& sum = sums[hips.text(row, finger)][hips.number(row, hip)];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        sum[axis] += hips.number(row, force[axis]);
-      }
-    }
-  }
+Picture hips(const HipForces& all) {
   Picture picture;
   picture.style = Picture::Style::kImpulses;
   std::ostringstream title;
-  title << "Force of each HIP at " << last << " s";
+  title << "Force of each HIP at " << all.time << " s";
   picture.title = title.str();
   picture.x_axis = "HIP";
   picture.y_axis = "|F| [N]";
-  for (const auto& [name, forces] : sums) {
+  for (const auto& [name, forces] : all.by_finger) {
     Series series{.name = name, .x = {}, .y = {}};
-    for (const auto& [number, sum] : forces) {
+    for (const auto& [number, force] : forces) {
       series.x.push_back(number);
-      series.y.push_back(length(sum));
+      series.y.push_back(length(force));
     }
     picture.series.push_back(std::move(series));
   }

@@ -105,7 +105,7 @@ void simulate(const SimulateOptions& options, std::ostream& summary) {
     if (recording) recording->write(snapshot);
     if (recording && tick == 0) recording->write(loop.scene().world.state(), snapshot);
     tell_faults(*mailbox, settings.rate_hz, devices.names(), recording ? &*recording : nullptr,
-                schedule.due_ns(tick), summary);
+                static_cast<std::uint64_t>(schedule.due_ns(tick)), summary);
   }
   csv.close();
   if (recording) recording->close();

@@ -14,7 +14,8 @@ namespace haptic::drivers::falcon {
 
 namespace {
 
-constexpr io::UsbMatch kFalcon{.vendor = 0x0403, .product = 0xcb48};
+constexpr std::uint16_t kVendor = 0x0403;
+constexpr std::uint16_t kProduct = 0xcb48;
 constexpr double kRateHz = 1000.0;
 
 // in flight: two to listen, so that one is ready while the other is looked at; three to send, as a packet
@@ -66,8 +67,7 @@ class FalconRoutine final : public DeviceRoutine {
   explicit FalconRoutine(FalconSettings settings) : settings_(std::move(settings)) {}
 
   void open() override {
-    io::UsbMatch match = kFalcon;
-    match.serial = settings_.serial;
+    const io::UsbMatch match{.vendor = kVendor, .product = kProduct, .serial = settings_.serial};
     usb_.emplace(match);
     try {
       UsbFtdiPort port(*usb_);

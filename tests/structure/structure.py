@@ -106,7 +106,10 @@ ROOMS = {
     "proto/foxglove": Room(ours=("schema",)),
     "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
-    "client/plot": Room(ours=("client/lib", "schema"), libraries=("google/protobuf/", "fmt/", "posix")),
+    "client/plot": Room(
+        ours=("client/lib", "client/export", "proto/recording", "schema"),
+        libraries=("google/protobuf/", "fmt/", "posix"),
+    ),
     "client/export": Room(
         ours=("proto/csv", "proto/recording", "schema"),
         libraries=("google/protobuf/", "fmt/", "hdf5.h", "posix"),

@@ -15,6 +15,7 @@ class Topic(IntEnum):
     DEVICES = v1.DEVICES
     EVENTS = v1.EVENTS
     STATS = v1.STATS
+    INPUTS = v1.INPUTS
 
 
 class Delivery(IntEnum):

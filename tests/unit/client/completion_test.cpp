@@ -48,8 +48,26 @@ TEST_F(Completion, OffersNamesFromTheDaemon) {
   EXPECT_EQ(offered(at + "object set box --inside w"), "wood ");
 }
 
+TEST_F(Completion, OffersFilesAfterTheWordThatComesBeforeThem) {
+  const std::string file = folder_.write("a.mcap", "");
+  EXPECT_EQ(offered("plot fr"), "friction ");
+  EXPECT_EQ(offered("plot friction " + folder_.file("a.m")), file + " ");
+  EXPECT_EQ(offered("plot friction --fr"), "--from ");
+}
+
 TEST_F(Completion, SaysNothingWhenThereIsNoDaemon) {
   EXPECT_EQ(offered("--socket /nowhere object move \"\""), " ");
+}
+
+TEST_F(Completion, IsGoodZshAndFish) {
+  for (const std::string shell : {"zsh", "fish"}) {
+    const std::string other = folder_.file("completion." + shell);
+    test::run_program(std::string(HAPTICCTL) + " completion " + shell + " > " + other);
+    const test::Finished read =
+        test::run_program(shell + " --no-exec" + (shell == "fish" ? "ute " : " ") + other);
+    EXPECT_EQ(read.code, 0) << shell;
+    EXPECT_EQ(read.output, "") << shell;
+  }
 }
 
 TEST_F(Completion, KnowsTheOtherShells) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "proto/recording/recording.h"
 #include "tests/support/memory_sink.h"
 #include "tests/support/test_daemon.h"
@@ -74,13 +76,12 @@ TEST_F(InputsRecorderTest, LeavesWhatIsOfOtherSubscriptionsAlone) {
   recorder_.begin();
   connection_.subscribe({v1::OBJECTS}, 1);
   daemon_.servo().publish(2);
-  int others = 0;
-  for (int i = 0; i < 2; ++i) {
-    const auto message = connection_.receive(std::chrono::seconds(5));
+  std::optional<v1::Envelope> message;
+  do {
+    message = connection_.receive(std::chrono::seconds(5));
     ASSERT_TRUE(message);
-    others += recorder_.take(*message) ? 0 : 1;
-  }
-  EXPECT_EQ(others, 1);
+  } while (recorder_.take(*message));
+  EXPECT_TRUE(message->frame().has_objects());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "client/lib/error.h"
 #include "client/plot/curves.h"
+#include "client/plot/forces.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,6 +18,8 @@ Csv csv(const std::string& text) {
   std::istringstream stream(text);
   return Csv::parse(stream, "t.csv");
 }
+
+Forces all_of(const Csv& table) { return forces_of(table, first_of(table)); }
 
 std::string error_of(const std::function<void()>& attempt) {
   try {
@@ -65,7 +68,7 @@ TEST(Csv, RefusesFieldsAndRowsWithoutEnd) {
 }
 
 TEST(Curves, AddTheForcesOfAFingersHips) {
-  const Picture picture = force(csv(kHips));
+  const Picture picture = force(all_of(csv(kHips)));
   ASSERT_EQ(picture.series.size(), 1U);
   EXPECT_EQ(picture.series[0].name, "a");
   EXPECT_EQ(picture.series[0].x, (std::vector<double>{0.0, 0.001}));
@@ -73,24 +76,39 @@ TEST(Curves, AddTheForcesOfAFingersHips) {
 }
 
 TEST(Curves, TakeDevicesAndObjectsAsWell) {
-  EXPECT_EQ(force(csv("time,device,fx,fy,fz\n0,left,0,0,-2\n")).series[0].y, std::vector<double>{2.0});
-  EXPECT_EQ(force(csv("time,object,fx,fy,fz\n0,box,0,6,8\n")).series[0].name, "box");
-  EXPECT_EQ(error_of([] { force(csv("time,hand,fx,fy,fz\n")); }), "t.csv:1: there is no column \"object\"");
+  EXPECT_EQ(force(all_of(csv("time,device,fx,fy,fz\n0,left,0,0,-2\n"))).series[0].y,
+            std::vector<double>{2.0});
+  EXPECT_EQ(force(all_of(csv("time,object,fx,fy,fz\n0,box,0,6,8\n"))).series[0].name, "box");
+  EXPECT_EQ(error_of([] { force(all_of(csv("time,hand,fx,fy,fz\n"))); }),
+            "t.csv:1: there is no column \"object\"");
 }
 
 TEST(Curves, DivideTangentialByNormalForce) {
-  const Picture picture = friction(csv(kHips), {0.0, 1.0, 0.0});
+  const Picture picture = friction(all_of(csv(kHips)), {0.0, 1.0, 0.0});
   EXPECT_DOUBLE_EQ(picture.series[0].y[0], 3.0 / 4.0);
   EXPECT_DOUBLE_EQ(picture.series[0].y[1], std::sqrt(5.0) / 2.0);
   // nothing presses along z at first
-  EXPECT_TRUE(std::isnan(friction(csv(kHips), {0.0, 0.0, 1.0}).series[0].y[0]));
+  EXPECT_TRUE(std::isnan(friction(all_of(csv(kHips)), {0.0, 0.0, 1.0}).series[0].y[0]));
+}
+
+TEST(Curves, LeaveOutWhatIsBeforeAndFromTheEndOn) {
+  const Csv table = csv(kHips);
+  EXPECT_EQ(force(forces_of(table, Forces::Of::kFingers, {.from = 0.001})).series[0].y,
+            std::vector<double>{3.0});
+  EXPECT_EQ(force(forces_of(table, Forces::Of::kFingers, {.to = 0.001})).series[0].y,
+            std::vector<double>{5.0});
+}
+
+TEST(Curves, HaveFrictionOfFingersOnly) {
+  EXPECT_EQ(error_of([] { forces_of(csv("time,device,fx,fy,fz\n"), Forces::Of::kFingers); }),
+            "t.csv:1: there is no column \"finger\"");
 }
 
 TEST(Curves, ShowEachHipAtTheTickThatIsAskedFor) {
-  const Picture last = hips(csv(kHips), std::nullopt);
+  const Picture last = hips(hip_forces_of(csv(kHips), std::nullopt));
   EXPECT_EQ(last.series[0].x, (std::vector<double>{0.0, 1.0}));
   EXPECT_EQ(last.series[0].y, (std::vector<double>{0.0, 3.0}));
-  const Picture first = hips(csv(kHips), 0.0009);
+  const Picture first = hips(hip_forces_of(csv(kHips), 0.0009));
   EXPECT_EQ(first.series[0].y, (std::vector<double>{3.0, std::sqrt(10.0)}));
 }
 
@@ -186,7 +204,7 @@ TEST_F(Drawing, IsAVerbOfHapticctl) {
   const std::string input = folder_.write("hips.csv", kHips);
   const std::string picture = folder_.file("p.svg");
   const std::string plot = HAPTICCTL " plot ";
-  for (const char* const kind : {"force", "friction", "hips --time 0"}) {
+  for (const char* const kind : {"force", "friction", "hips --at 0"}) {
     const test::Finished finished = test::run_program(plot + kind + " " + input + " -o " + picture);
     EXPECT_EQ(finished.code, 0) << kind << ": " << finished.output;
     EXPECT_TRUE(std::filesystem::remove(picture)) << kind;

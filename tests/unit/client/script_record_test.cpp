@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "proto/recording/recording.h"
 #include "proto/recording/source.h"
@@ -37,6 +39,12 @@ class ScriptRecord : public testing::Test {
 
   test::TemporaryFolder folder_;
   test::TestDaemon daemon_;
+  std::jthread ticking_{[this](const std::stop_token& stop) {
+    for (std::uint64_t tick = 2; !stop.stop_requested(); ++tick) {
+      daemon_.servo().publish(tick);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }};
 };
 
 TEST_F(ScriptRecord, GoesOnBesideTheLinesThatFollowUntilItIsStopped) {

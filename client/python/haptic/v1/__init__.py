@@ -5,4 +5,5 @@ from haptic.v1.control_pb2 import *  # noqa: F401,F403
 from haptic.v1.device_pb2 import *  # noqa: F401,F403
 from haptic.v1.geometry_pb2 import *  # noqa: F401,F403
 from haptic.v1.scene_pb2 import *  # noqa: F401,F403
+from haptic.v1.state_pb2 import *  # noqa: F401,F403
 from haptic.v1.telemetry_pb2 import *  # noqa: F401,F403

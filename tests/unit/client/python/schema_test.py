@@ -61,7 +61,7 @@ class Schema(unittest.TestCase):
         }
         renamed = {
             "get_status": "status", "list_devices": "devices", "get_scene": "scene", "get_stats": "stats",
-            "edit_scene": "edit",
+            "edit_scene": "edit", "get_state": "state",
         }
         descriptor = v1.Request.DESCRIPTOR
         for call in descriptor.oneofs_by_name["call"].fields:
