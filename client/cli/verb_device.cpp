@@ -132,7 +132,7 @@ void add_device(CLI::App& app, Command& command) {
   verb->add_option("name", options->name, "which")->required()->type_name("DEVICE");
   add_pose_options(*verb, [options](const PoseChange& change) { change(options->pose); });
   verb->get_option("--at")->required();
-  const CLI::Range some_time(0.0, 86400.0);
+  const CLI::Validator some_time = CLI::Range(0.0, 86400.0).description("");
   verb->add_option("--over", options->over, "straight from where it is, within so long; default: at once")
       ->check(some_time)
       ->type_name("SECONDS");
