@@ -40,7 +40,7 @@ class BridgeProcess {
     if (process_ == 0) {
       ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
       ::execl(program.c_str(), program.c_str(), "--socket", socket.c_str(), "--url", url.c_str(), "--host",
-              "bench", "--topic", "objects", "--decimation", ticks.c_str(), nullptr);
+              "bench", "--topic", "objects", "--decimation", ticks.c_str(), "--lossless", nullptr);
       ::_exit(127);
     }
   }
