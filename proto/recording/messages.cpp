@@ -1,6 +1,7 @@
 #include <google/protobuf/message.h>
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -13,6 +14,10 @@ namespace {
 
 // of chunks that overlap in time and so are kept at once
 constexpr std::uint64_t kMostHeld = 2 * kLargestChunk;
+
+bool ends_before(const Query& query, std::uint64_t time) {
+  return query.to != std::numeric_limits<std::uint64_t>::max() && query.to <= time;
+}
 
 }  // namespace
 
@@ -47,7 +52,7 @@ Messages::Messages(const Recording& recording, Query query)
 }
 
 bool Messages::wants(const ChunkIndex& index) const {
-  if (index.end_time < query_.from || index.start_time >= query_.to) {
+  if (index.end_time < query_.from || ends_before(query_, index.start_time)) {
     return false;
   }
   const auto& here = index.message_index_offsets;
@@ -56,7 +61,7 @@ bool Messages::wants(const ChunkIndex& index) const {
 }
 
 bool Messages::wants(const Message& message) const {
-  return message.log_time >= query_.from && message.log_time < query_.to &&
+  return message.log_time >= query_.from && !ends_before(query_, message.log_time) &&
          channels_.count(message.channel_id) > 0;
 }
 

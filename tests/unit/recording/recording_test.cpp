@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "haptic/v1/telemetry.pb.h"
 #include "proto/recording/compression.h"
@@ -103,6 +104,15 @@ TEST(Recording, ChoosesTimesFromTheFirstUpToButNotTheLast) {
             (std::vector<std::uint64_t>{2 * kSecond, 3 * kSecond}));
   EXPECT_TRUE(hear(recording, {.from = 7 * kSecond}).empty());
   EXPECT_TRUE(hear(recording, {.to = kSecond}).empty());
+}
+
+TEST(Recording, WithoutALastTimeEvenTheGreatestIsRead) {
+  constexpr std::uint64_t kGreatest = std::numeric_limits<std::uint64_t>::max();
+  const std::string bytes = Handmade().add_channel().add_chunk({1, kGreatest}).add_chunk({kGreatest}).end();
+  const MemorySource source(bytes);
+  const Recording recording(source);
+  EXPECT_EQ(times_of(hear(recording)), (std::vector<std::uint64_t>{1, kGreatest, kGreatest}));
+  EXPECT_EQ(times_of(hear(recording, {.to = kGreatest - 1})), (std::vector<std::uint64_t>{1}));
 }
 
 TEST(Recording, MessagesComeInTheOrderOfTimeThoughChunksOverlap) {
