@@ -1,7 +1,11 @@
 // Scripts as hapticctl runs them: what they print, where they stop, and their exit codes.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <thread>
@@ -77,6 +81,22 @@ TEST_F(ScriptRun, HoldsTheLeaseFromTheFirstLineThatArmsUntilItsEnd) {
   EXPECT_EQ(done.code, 0) << done.output;
   EXPECT_EQ(daemon_.leases(), 1);
   EXPECT_EQ(daemon_.releases(), 1);
+  EXPECT_GE(daemon_.heartbeats(), 5);  // of 20 that are due in half a second with 25 ms between them
+}
+
+TEST_F(ScriptRun, SendsHeartbeatsWhileAVerbWorksOnAFile) {
+  // nobody can open the pipe for reading before it is opened for writing
+  const std::string pipe = folder_.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::jthread writing([&pipe](const std::stop_token& stop) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    const int writer = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);
+    while (!stop.stop_requested()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::close(writer);
+  });
+  EXPECT_EQ(run("arm\ninfo " + pipe + "\n").code, 1);  // a pipe is no recording
   EXPECT_GE(daemon_.heartbeats(), 5);  // of 20 that are due in half a second with 25 ms between them
 }
 
