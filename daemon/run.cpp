@@ -16,6 +16,7 @@
 #include "daemon/scene_builder.h"
 #include "ipc/server.h"
 #include "load/config_file.h"
+#include "rt/tick_clock.h"
 #include "servo/servo_loop.h"
 #include "servo/servo_thread.h"
 #include "setup/device_set.h"
@@ -107,6 +108,29 @@ std::vector<v1::DeviceDescription> describe_devices(const setup::DeviceSet& devi
   return descriptions;
 }
 
+ipc::PlaceDevice place_with(drivers::VirtualDevice* device) {
+  if (device == nullptr) return {};
+  return [device](const ipc::DevicePlace& place) -> ipc::LiveForce {
+    device->place({.time = place.time_ns,
+                   .position = place.position,
+                   .orientation = place.orientation,
+                   .velocity = place.velocity.value_or(glm::dvec3(0.0)),
+                   .buttons = place.buttons},
+                  place.velocity.has_value());
+    const drivers::ForceCommand force = device->live_force(rt::monotonic_ns());
+    return {.expires_ns = force.expires, .force = force.force, .torque = force.torque};
+  };
+}
+
+std::vector<ipc::PlaceDevice> places_of(const setup::DeviceSet& devices) {
+  std::vector<ipc::PlaceDevice> places;
+  places.reserve(devices.names().size());
+  for (std::size_t i = 0; i < devices.names().size(); ++i) {
+    places.push_back(place_with(devices.find_virtual(i)));
+  }
+  return places;
+}
+
 v1::RealTime describe_rights(const rt::RealtimeReport& report) {
   v1::RealTime told;
   told.set_fifo(report.fifo);
@@ -167,7 +191,8 @@ void run(const RunOptions& options) {
        .running = std::move(running),
        .build_scene = [&](const v1::LoadScene& request) { return builder.from_request(request); },
        .edit_scene = [&](const v1::EditScene& request,
-                         const ipc::RunningScene& edited) { return builder.from_edit(request, edited); }});
+                         const ipc::RunningScene& edited) { return builder.from_edit(request, edited); },
+       .place_device = places_of(devices)});
   const StopWaiter waiter(signals, [&] {
     spdlog::info("stopping");
     // first what a hand feels, then what a screen shows

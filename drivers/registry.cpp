@@ -1,8 +1,10 @@
 #include "drivers/registry.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "drivers/external/external_device.h"
 #include "drivers/falcon/falcon_device.h"
 #include "drivers/fastrak/fastrak_device.h"
 #include "drivers/haply/haply_device.h"
@@ -11,6 +13,7 @@
 #include "drivers/polhem/polhem_device.h"
 #include "drivers/simulated/simulated_device.h"
 #include "drivers/spacemouse/spacemouse_device.h"
+#include "drivers/virtual/virtual_device.h"
 
 namespace haptic::drivers {
 
@@ -24,7 +27,7 @@ struct Files {
 
 struct Driver {
   v1::Device::DriverCase driver;
-  std::string (*path_file)(const v1::Device& config);  // none: hardware, which follows no path
+  std::string (*path_file)(const v1::Device& config);  // none: it lives in real time, and follows no path
   std::unique_ptr<Device> (*make)(const v1::Device& config, const Files& files);
 };
 
@@ -36,6 +39,39 @@ BasePose base_of(const v1::Device& config) {
           .orientation = {turn.w(), turn.x(), turn.y(), turn.z()}};
 }
 
+InjectedKind kind_of(v1::Device::Simulated::InjectedFault::Kind kind) {
+  using Fault = v1::Device::Simulated::InjectedFault;
+  switch (kind) {
+    case Fault::DELAY:
+      return InjectedKind::kDelay;
+    case Fault::FREEZE:
+      return InjectedKind::kFreeze;
+    case Fault::NOT_A_NUMBER:
+      return InjectedKind::kNotANumber;
+    case Fault::JUMP:
+      return InjectedKind::kJump;
+    case Fault::UNPLUG:
+      return InjectedKind::kUnplug;
+    default:
+      return InjectedKind::kDrop;
+  }
+}
+
+std::vector<InjectedFault> faults_of(const v1::Device::Simulated& config) {
+  std::vector<InjectedFault> faults;
+  faults.reserve(static_cast<std::size_t>(config.fault_size()));
+  for (const auto& fault : config.fault()) {
+    const v1::Vector3& offset = fault.offset();
+    faults.push_back(
+        {.kind = kind_of(fault.kind()),
+         .at = fault.at(),
+         .duration = fault.duration() == 0.0 ? std::numeric_limits<double>::infinity() : fault.duration(),
+         .delay = fault.delay(),
+         .offset = {offset.x(), offset.y(), offset.z()}});
+  }
+  return faults;
+}
+
 std::unique_ptr<Device> make_simulated(const v1::Device& config, const Files& files) {
   const v1::Device::Simulated& simulated = config.simulated();
   SimulatedSettings settings{.name = config.name(),
@@ -44,7 +80,8 @@ std::unique_ptr<Device> make_simulated(const v1::Device& config, const Files& fi
                              .hand_stiffness = simulated.hand().stiffness(),
                              .hand_damping = simulated.hand().damping(),
                              .path = files.path,
-                             .repeat = simulated.hand().repeat()};
+                             .repeat = simulated.hand().repeat(),
+                             .faults = faults_of(simulated)};
   return std::make_unique<SimulatedDevice>(std::move(settings));
 }
 
@@ -134,6 +171,21 @@ std::unique_ptr<Device> make_haply(const v1::Device& config, const Files& /*file
                             .world_from_base = base_of(config)});
 }
 
+std::unique_ptr<Device> make_virtual(const v1::Device& config, const Files& /*files*/) {
+  return std::make_unique<VirtualDevice>(config.name());
+}
+
+std::unique_ptr<Device> make_external(const v1::Device& config, const Files& /*files*/) {
+  const v1::Device::External& settings = config.external();
+  const bool is_limited = settings.max_force() != 0.0;
+  return external::make_external(
+      {.name = config.name(),
+       .path = settings.path(),
+       .users = {settings.user().begin(), settings.user().end()},
+       .max_force = is_limited ? settings.max_force() : std::numeric_limits<double>::infinity(),
+       .world_from_base = base_of(config)});
+}
+
 constexpr Driver kDrivers[] = {
     {v1::Device::kSimulated, [](const v1::Device& config) { return config.simulated().hand().path(); },
      &make_simulated},
@@ -145,6 +197,8 @@ constexpr Driver kDrivers[] = {
     {v1::Device::kFastrak, nullptr, &make_fastrak},
     {v1::Device::kPolhem, nullptr, &make_polhem},
     {v1::Device::kHaply, nullptr, &make_haply},
+    {v1::Device::kVirtual, nullptr, &make_virtual},
+    {v1::Device::kExternal, nullptr, &make_external},
 };
 
 const Driver* find_driver(const v1::Device& config) {

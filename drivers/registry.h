@@ -16,7 +16,7 @@ namespace haptic::drivers {
 /// The file with the path that the device follows, as the config names it; empty if it follows none.
 std::string path_file_of(const v1::Device& config);
 
-/// Whether the device is computed, and so runs on a virtual clock too; false for hardware.
+/// Whether the device is computed, and so runs on a virtual clock too; false for what lives in real time.
 bool is_computed(const v1::Device& config);
 
 /// A device that is not yet started. `path` holds the rows of path_file_of(), `firmware` the bytes that its

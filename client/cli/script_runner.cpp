@@ -216,7 +216,8 @@ ExitCode ScriptRunner::end_background() {
 
 void ScriptRunner::take_lease(const std::string& verb) {
   const bool arms = verb == "arm";
-  if ((!arms && verb != "object move") || command_.connect().holds_drive()) {
+  const bool moves = verb == "object move" || verb == "device move";
+  if ((!arms && !moves) || command_.connect().holds_drive()) {
     return;
   }
   try {

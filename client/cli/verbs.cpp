@@ -5,6 +5,7 @@ namespace haptic::cli {
 void add_verbs(CLI::App& app, Command& command) {
   add_status(app, command);
   add_devices(app, command);
+  add_device(app, command);
   add_scene(app, command);
   add_objects(app, command);
   add_fingers(app, command);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "ipc/device_moves.h"
 #include "ipc/drive_lease.h"
 #include "ipc/publisher.h"
 #include "ipc/reply.h"
@@ -37,6 +38,7 @@ struct Desk {
   SteadyClock::time_point started;
   std::function<std::size_t()> count_clients;
   DriveLease& lease;
+  DeviceMoves moves{};
 };
 
 /// The least role that the request needs; ROLE_UNSPECIFIED if this daemon does not know the call.

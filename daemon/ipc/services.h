@@ -3,8 +3,12 @@
 // the start, and the one thing that takes time, building a scene. Nothing else of the daemon is seen from
 // here.
 
+#include <cstdint>
 #include <functional>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -36,6 +40,25 @@ class SceneError : public std::runtime_error {
   v1::Error wire;
 };
 
+/// Where a client says that a virtual device is: finite, and the rotation a unit quaternion. World frame.
+struct DevicePlace {
+  std::int64_t time_ns = 0;  // of the servo's clock
+  glm::dvec3 position{0.0};  // m
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+  std::optional<glm::dvec3> velocity{};  // m/s; none: the client did not tell
+  std::uint32_t buttons = 0;
+};
+
+/// What it shall do to its user until then.
+struct LiveForce {
+  std::int64_t expires_ns = 0;  // of the servo's clock; 0: there is none
+  glm::dvec3 force{0.0};        // N
+  glm::dvec3 torque{0.0};       // N m
+};
+
+/// Places a virtual device and tells the newest force.
+using PlaceDevice = std::function<LiveForce(const DevicePlace&)>;
+
 struct Services {
   servo::Mailbox& mailbox;
   std::string version;
@@ -50,6 +73,9 @@ struct Services {
   std::function<BuiltScene(const v1::LoadScene&)> build_scene;
   /// The same for the scene that runs with the client's edits done.
   std::function<BuiltScene(const v1::EditScene&, const RunningScene&)> edit_scene;
+
+  /// In the order of the device set; empty for a device that no client can move. io thread, never waits.
+  std::vector<PlaceDevice> place_device{};
 };
 
 }  // namespace haptic::ipc

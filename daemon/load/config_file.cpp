@@ -5,18 +5,21 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "load/device_config.h"
 #include "load/path_file.h"
 #include "load/ranges.h"
 #include "load/read_file.h"
+#include "load/scene_parts.h"
 
 namespace haptic::load {
 namespace {
 
 constexpr std::uint32_t kKibi = 1024;
 constexpr std::uint32_t kMebi = 1024 * kKibi;
+constexpr double kLongestDelay = 1.0;  // s; a simulated device keeps no older samples
 
 /// Fills one section after the other and checks it.
 class ConfigCheck {
@@ -136,6 +139,11 @@ class ConfigCheck {
         return simulated(field + ".simulated", *device.mutable_simulated());
       case v1::Device::kPlayback:
         return path(field + ".playback.path", *device.mutable_playback()->mutable_path());
+      case v1::Device::kVirtual:
+        return {};
+      case v1::Device::kExternal:
+        external(field + ".external", *device.mutable_external());
+        return {};
       case v1::Device::DRIVER_NOT_SET:
         source_.fail(field, "has no driver (permitted: " + known_drivers() + ")");
       default:
@@ -146,10 +154,54 @@ class ConfigCheck {
   std::vector<drivers::PathPoint> simulated(const std::string& field, v1::Device::Simulated& device) {
     check_range(source_, field + ".mass", device.mass(), {0.0, 1e3, " kg", true});
     check_range(source_, field + ".damping", device.damping(), {0.0, 1e6, " N s/m"});
+    for (int i = 0; i < device.fault_size(); ++i) {
+      injected_fault(field + "." + item("fault", i), device.fault(i));
+    }
     if (!device.has_hand()) return {};
     check_range(source_, field + ".hand.stiffness", device.hand().stiffness(), {0.0, 1e6, " N/m", true});
     check_range(source_, field + ".hand.damping", device.hand().damping(), {0.0, 1e6, " N s/m"});
     return path(field + ".hand.path", *device.mutable_hand()->mutable_path());
+  }
+
+  void injected_fault(const std::string& field, const v1::Device::Simulated::InjectedFault& fault) const {
+    using Fault = v1::Device::Simulated::InjectedFault;
+    if (fault.kind() <= Fault::KIND_UNSPECIFIED || fault.kind() > Fault::Kind_MAX) {
+      source_.fail(field + ".kind",
+                   "is missing (permitted: DROP, DELAY, FREEZE, NOT_A_NUMBER, JUMP, UNPLUG)");
+    }
+    check_range(source_, field + ".at", fault.at(), {0.0, 1e6, " s"});
+    check_range(source_, field + ".duration", fault.duration(), {0.0, 1e6, " s"});
+    if (fault.kind() == Fault::DELAY) {
+      check_range(source_, field + ".delay", fault.delay(), {0.0, kLongestDelay, " s", true});
+    } else if (fault.delay() != 0.0) {
+      source_.fail(field + ".delay", "is of the kind DELAY only");
+    }
+    if (fault.kind() == Fault::JUMP) {
+      if (!fault.has_offset()) source_.fail(field + ".offset", "is missing: a JUMP goes somewhere");
+      make_point(source_, field + ".offset", fault.offset());
+    } else if (fault.has_offset()) {
+      source_.fail(field + ".offset", "is of the kind JUMP only");
+    }
+  }
+
+  void external(const std::string& field, v1::Device::External& device) {
+    if (device.path().empty()) source_.fail(field + ".path", "is missing: expected the path of a socket");
+    device.set_path(relative_to(file_, device.path()).string());
+    check_socket_length(field + ".path", device.path());
+    if (!sockets_.insert(device.path()).second) {
+      source_.fail(field + ".path", in_quotes(device.path()) + " is also the socket of another device");
+    }
+    for (int i = 0; i < device.user_size(); ++i) {
+      if (device.user(i).empty()) source_.fail(field + "." + item("user", i), "is empty");
+    }
+    check_range(source_, field + ".max_force", device.max_force(), {0.0, 1000.0, " N"});
+  }
+
+  void check_socket_length(const std::string& field, const std::string& path) const {
+    constexpr std::size_t kLongest = sizeof(sockaddr_un::sun_path) - 1;
+    if (path.size() <= kLongest) return;
+    source_.fail(field, "has " + std::to_string(path.size()) + " bytes (permitted: up to " +
+                            std::to_string(kLongest) + ")");
   }
 
   std::vector<drivers::PathPoint> path(const std::string& field, std::string& path) const {
@@ -188,11 +240,7 @@ class ConfigCheck {
   std::string unix_socket(const std::string& field, v1::Listen::Unix& listen) const {
     if (listen.path().empty()) source_.fail(field + ".path", "is missing: expected the path of a socket");
     listen.set_path(relative_to(file_, listen.path()).string());
-    constexpr std::size_t kLongest = sizeof(sockaddr_un::sun_path) - 1;
-    if (listen.path().size() > kLongest) {
-      source_.fail(field + ".path", "has " + std::to_string(listen.path().size()) +
-                                        " bytes (permitted: up to " + std::to_string(kLongest) + ")");
-    }
+    check_socket_length(field + ".path", listen.path());
     for (int i = 0; i < listen.allow_size(); ++i) {
       const std::string allow = field + "." + item("allow", i);
       if (listen.allow(i).group().empty()) {
@@ -252,6 +300,7 @@ class ConfigCheck {
     }
   }
 
+  std::set<std::string> sockets_;  // of external devices
   v1::DaemonConfig& config_;
   const TextSource& source_;
   const std::filesystem::path& file_;

@@ -171,9 +171,9 @@ std::string driver_name(const v1::Device& device) {
 
 std::string check_hardware(const TextSource& source, const std::string& field,
                            const std::filesystem::path& file, v1::Device& device) {
-  const bool is_computed = device.has_simulated() || device.has_playback();
-  if (is_computed && device.has_base()) {
-    source.fail(field + ".base", "is only for hardware: this device follows a path in the world");
+  const bool is_in_world = device.has_simulated() || device.has_playback() || device.has_virtual_();
+  if (is_in_world && device.has_base()) {
+    source.fail(field + ".base", "is only for hardware: this device is told where it is in the world");
   }
   if (device.has_base()) check_base(source, field + ".base", *device.mutable_base());
   switch (device.driver_case()) {

@@ -1,13 +1,14 @@
 #include "setup/device_set.h"
 
 #include "drivers/registry.h"
+#include "load/text_message.h"
 
 namespace haptic::setup {
 
 void require_computed_devices(const load::LoadedConfig& config) {
   for (int i = 0; i < config.message.device_size(); ++i) {
     if (drivers::is_computed(config.message.device(i))) continue;
-    config.source.fail(load::item("device", i), "is hardware, which has no virtual clock");
+    config.source.fail(load::item("device", i), "lives in real time: it cannot follow a virtual clock");
   }
 }
 
@@ -34,6 +35,10 @@ void DeviceSet::start() {
 
 void DeviceSet::stop() noexcept {
   while (started_ > 0) pointers_[--started_]->stop();
+}
+
+drivers::VirtualDevice* DeviceSet::find_virtual(std::size_t index) const noexcept {
+  return dynamic_cast<drivers::VirtualDevice*>(pointers_[index]);
 }
 
 }  // namespace haptic::setup

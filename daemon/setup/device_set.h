@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "drivers/device.h"
+#include "drivers/virtual/virtual_device.h"
 #include "load/config_file.h"
 
 namespace haptic::setup {
 
-/// For the virtual clock: throws load::LoadError, with the place, if a device of the config is hardware.
+/// For the virtual clock: throws load::LoadError, with the place, if a device of the config lives in real
+/// time.
 void require_computed_devices(const load::LoadedConfig& config);
 
 class DeviceSet {
@@ -31,6 +33,9 @@ class DeviceSet {
 
   std::span<drivers::Device* const> devices() const noexcept { return pointers_; }
   std::span<const std::string> names() const noexcept { return names_; }
+
+  /// The device that clients move, of that index; nullptr if it is of another driver.
+  drivers::VirtualDevice* find_virtual(std::size_t index) const noexcept;
 
  private:
   std::vector<std::unique_ptr<drivers::Device>> owned_;

@@ -75,9 +75,9 @@ void tell_transitions(const engine::TransitionTable& table, std::ostream& summar
 
 void simulate(const SimulateOptions& options, std::ostream& summary) {
   const load::LoadedConfig config = load::load_config(options.config);
-  setup::require_computed_devices(config);
   const std::shared_ptr<const load::LoadedScene> loaded = scene_of(options, config.message);
   const std::shared_ptr<const engine::Scene> scene(loaded, &loaded->scene);
+  setup::require_computed_devices(config);
   setup::DeviceSet devices(config);
   TickCsv csv(options.csv);
 

@@ -22,7 +22,8 @@ SimulatedDevice::SimulatedDevice(SimulatedSettings settings)
     : info_{.name = settings.name,
             .driver = "simulated",
             .max_force = std::numeric_limits<double>::infinity()},
-      settings_(std::move(settings)) {}
+      settings_(std::move(settings)),
+      faults_(settings_.faults) {}
 
 void SimulatedDevice::start() {
   running_ = true;
@@ -30,6 +31,7 @@ void SimulatedDevice::start() {
   position_ = sample(settings_.path, 0.0, settings_.repeat).position;
   velocity_ = glm::dvec3(0.0);
   command_ = {};
+  faults_.start();
 }
 
 void SimulatedDevice::stop() noexcept { running_ = false; }
@@ -43,15 +45,19 @@ bool SimulatedDevice::read(Nanoseconds now, DeviceSample& device_sample) noexcep
   }
   advance(now);
   const PathSample hand = sample(settings_.path, seconds(now - start_time_), settings_.repeat);
-  device_sample = {.time = now,
-                   .position = position_,
-                   .orientation = hand.orientation,
-                   .velocity = velocity_,
-                   .buttons = 0};
+  DeviceSample measured{.time = now,
+                        .position = position_,
+                        .orientation = hand.orientation,
+                        .velocity = velocity_,
+                        .buttons = 0};
+  if (!faults_.pass(now - start_time_, measured)) return false;
+  device_sample = measured;
   return true;
 }
 
-void SimulatedDevice::write(Nanoseconds /*now*/, const ForceCommand& command) noexcept { command_ = command; }
+void SimulatedDevice::write(Nanoseconds /*now*/, const ForceCommand& command) noexcept {
+  command_ = faults_.is_unplugged() ? ForceCommand{} : command;
+}
 
 void SimulatedDevice::advance(Nanoseconds to) noexcept {
   if (to - time_ > kLongestGap) time_ = to - kLongestGap;

@@ -7,13 +7,15 @@
 //                  ~~~d~~~
 //
 // Orientation is that of the path; torque moves nothing. Computed in read(), without a thread, on the servo's
-// clock alone: equal times and forces give equal bits. Real-time safe.
+// clock alone: equal times and forces give equal bits. Real-time safe. What it tells can be made to fail on
+// purpose (injected_fault.h); the mass moves on as it would.
 
 #include <string>
 #include <vector>
 
 #include "drivers/device.h"
 #include "drivers/path.h"
+#include "drivers/simulated/injected_fault.h"
 
 namespace haptic::drivers {
 
@@ -25,6 +27,7 @@ struct SimulatedSettings {
   double hand_damping = 0.0;      // N s/m, >= 0
   std::vector<PathPoint> path{};  // of the hand
   bool repeat = false;
+  std::vector<InjectedFault> faults{};
 };
 
 class SimulatedDevice final : public Device {
@@ -48,6 +51,7 @@ class SimulatedDevice final : public Device {
 
   DeviceInfo info_;
   SimulatedSettings settings_;
+  FaultInjector faults_;
   bool running_ = false;
   bool timed_ = false;  // start_time_ is set
   Nanoseconds start_time_ = 0;

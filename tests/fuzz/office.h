@@ -3,8 +3,11 @@
 // told.
 
 #include <chrono>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
+#include <vector>
 
 #include "ipc/dispatch.h"
 
@@ -27,6 +30,23 @@ class Office {
   }
 
  private:
+  static std::vector<v1::DeviceDescription> devices() {
+    std::vector<v1::DeviceDescription> devices(1);
+    devices[0].set_name("mouse");
+    devices[0].set_driver("virtual");
+    return devices;
+  }
+
+  // what a handler lets through is finite, and a rotation
+  static ipc::LiveForce place(const ipc::DevicePlace& place) {
+    const double sum = place.position.x + place.position.y + place.position.z;
+    const double length = glm::length(place.orientation);
+    if (!std::isfinite(sum) || !(std::abs(length - 1.0) < 1e-9)) {
+      std::abort();
+    }
+    return {};
+  }
+
   template <class... Request>
   static ipc::BuiltScene refuse(const Request&... /*request*/) {
     throw ipc::SceneError(ipc::make_error(v1::Error::FAILED, "no scene is built here"));
@@ -36,12 +56,13 @@ class Office {
   ipc::Services services_{.mailbox = mailbox_,
                           .version = "1",
                           .rate_hz = 1000.0,
-                          .devices = {},
+                          .devices = devices(),
                           .real_time = {},
                           .scene = {},
                           .running = std::make_shared<const engine::Scene>(),
                           .build_scene = refuse<v1::LoadScene>,
-                          .edit_scene = refuse<v1::EditScene, ipc::RunningScene>};
+                          .edit_scene = refuse<v1::EditScene, ipc::RunningScene>,
+                          .place_device = {place}};
   ipc::ServoLink servo_{mailbox_, std::chrono::seconds(1), [](const servo::Event&) {}};
   ipc::SceneStore scenes_{services_, servo_};
   ipc::Publisher publisher_;

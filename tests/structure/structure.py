@@ -79,7 +79,7 @@ ROOMS = {
     ),
     "drivers/device.h": Room(libraries=("glm/",)),
     "drivers": Room(
-        ours=("drivers/device.h", "drivers/io", "daemon/rt"),
+        ours=("drivers/device.h", "drivers/io", "daemon/rt", "proto/device"),
         libraries=("glm/", "fmt/", "posix"),
     ),
     # the ways to devices, which know no device
@@ -102,6 +102,7 @@ ROOMS = {
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),
     "proto": Room(ours=("schema",), libraries=("google/protobuf/", "posix")),
     "proto/csv": Room(),
+    "proto/device": Room(libraries=("posix",)),  # copied into programs that have nothing else of ours
     "proto/foxglove": Room(ours=("schema",)),
     "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),

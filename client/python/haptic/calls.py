@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 from haptic import v1
 
@@ -81,6 +82,36 @@ class Calls(ABC):
     async def step(self, ticks: int = 1) -> None:
         """Runs so many ticks while paused, at the servo's rate, and returns when they have run."""
         await self.call(v1.Request(step=v1.Step(ticks=ticks)), timeout=self._patience + ticks / _SLOWEST_RATE)
+
+    # --- a virtual device: role DRIVE ------------------------------------------------------------------------------
+
+    async def move_device(
+        self,
+        device: str,
+        position: Sequence[float],
+        orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0),
+        velocity: Sequence[float] | None = None,
+        *,
+        buttons: int = 0,
+        sequence: int = 0,
+        monotonic_ns: int = 0,
+    ) -> v1.DeviceForce:
+        """Tells where a device of the driver "virtual" is, in the world, and returns what it shall do to its user.
+
+        Position in m; orientation w, x, y, z; velocity in m/s, otherwise as the positions tell. To be called again within
+        safety.max_sample_age. `sequence` and `monotonic_ns`: see MoveDevice in the schema. Raises Refused while another
+        client drives or moves it, NothingToDo if a newer sample has come before.
+        """
+        x, y, z = position
+        qw, qx, qy, qz = orientation
+        move = v1.MoveDevice(
+            device=device,
+            pose=v1.Pose(position=v1.Vector3(x=x, y=y, z=z), orientation=v1.Quaternion(w=qw, x=qx, y=qy, z=qz)),
+            buttons=buttons, sequence=sequence, monotonic_ns=monotonic_ns)
+        if velocity is not None:
+            vx, vy, vz = velocity
+            move.velocity.CopyFrom(v1.Vector3(x=vx, y=vy, z=vz))
+        return (await self.call(v1.Request(move_device=move))).device_force
 
     # --- forces: role DRIVE; faults: role ADMIN --------------------------------------------------------------------
 

@@ -124,6 +124,12 @@ TEST_F(ScriptRun, TakesTheLeaseToMoveIfItIsFree) {
   EXPECT_EQ(daemon_.releases(), 1);
 }
 
+TEST_F(ScriptRun, TakesTheLeaseToMoveADevice) {
+  EXPECT_EQ(run("device move mouse --at 0 0.2 0\n").code, 3) << "the toy has none";
+  EXPECT_EQ(daemon_.leases(), 1);
+  EXPECT_EQ(daemon_.releases(), 1);
+}
+
 TEST_F(ScriptRun, FailsWhenAnExpectationDoes) {
   EXPECT_EQ(run("expect object box.y == 0.05 within 1e-6\n").code, 0);
   const Finished failed = run("\nexpect object box.y > 0.1\n");

@@ -4,6 +4,8 @@
 #include <google/protobuf/message.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace haptic::drivers {
 namespace {
 
@@ -97,6 +99,53 @@ TEST(Registry, OnlyWhatFollowsAPathIsComputed) {
   EXPECT_TRUE(is_computed(config));
   config.mutable_falcon();
   EXPECT_FALSE(is_computed(config));
+}
+
+TEST(Registry, InjectsTheFaultsOfASimulatedDevicesConfig) {
+  v1::Device config;
+  config.mutable_simulated()->set_mass(0.1);
+  auto& late = *config.mutable_simulated()->add_fault();
+  late.set_kind(v1::Device::Simulated::InjectedFault::JUMP);
+  late.set_at(0.01);
+  late.set_duration(0.005);
+  late.mutable_offset()->set_z(0.5);
+  auto& gone = *config.mutable_simulated()->add_fault();
+  gone.set_kind(v1::Device::Simulated::InjectedFault::UNPLUG);
+  gone.set_at(0.02);
+  const std::unique_ptr<Device> device = make_device(config, {});
+  device->start();
+  DeviceSample sample;
+  const auto z_at = [&](Nanoseconds milliseconds) {
+    EXPECT_TRUE(device->read(milliseconds * 1'000'000, sample)) << milliseconds;
+    return sample.position.z;
+  };
+  EXPECT_EQ(z_at(0), 0.0);
+  EXPECT_EQ(z_at(9), 0.0);
+  EXPECT_EQ(z_at(10), 0.5);
+  EXPECT_EQ(z_at(14), 0.5);
+  EXPECT_EQ(z_at(15), 0.0);
+  EXPECT_FALSE(device->read(20'000'000, sample));
+  EXPECT_FALSE(device->read(3'600'000'000'000, sample)) << "without a duration it does not end";
+}
+
+TEST(Registry, MakesDevicesThatOthersServe) {
+  v1::Device config;
+  config.set_name("mouse");
+  config.mutable_virtual_();
+  EXPECT_FALSE(is_computed(config));
+  EXPECT_EQ(path_file_of(config), "");
+  const std::unique_ptr<Device> mouse = make_device(config, {});
+  EXPECT_EQ(mouse->info().name, "mouse");
+  EXPECT_EQ(mouse->info().driver, "virtual");
+  EXPECT_EQ(mouse->info().max_force, std::numeric_limits<double>::infinity());
+
+  config.mutable_external()->set_path("s");
+  EXPECT_FALSE(is_computed(config));
+  EXPECT_EQ(make_device(config, {})->info().max_force, std::numeric_limits<double>::infinity());
+  config.mutable_external()->set_max_force(3.5);
+  const std::unique_ptr<Device> arm = make_device(config, {});
+  EXPECT_EQ(arm->info().driver, "external");
+  EXPECT_EQ(arm->info().max_force, 3.5);
 }
 
 TEST(Registry, ADeviceWithoutADriverIsAnErrorThatNamesIt) {

@@ -92,6 +92,52 @@ TEST(Config, RefusesASecondDeviceOfTheSameName) {
       "/c/hapticd.txtpb:2:10: device[1].name: \"d\" is also the name of device[0]");
 }
 
+TEST(Config, FillsInWhatADeviceThatOthersServeIs) {
+  const LoadedConfig config = config_of(
+      "device { name: \"mouse\" virtual {} }\n"
+      "device { name: \"omega\" external { path: \"s/omega.sock\" user: \"lab\" } base { position { y: 1 } } "
+      "}");
+  ASSERT_EQ(config.paths.size(), 2U);
+  const v1::Device::External& external = config.message.device(1).external();
+  EXPECT_EQ(external.path(), "/c/s/omega.sock");
+  EXPECT_EQ(external.user(0), "lab");
+}
+
+TEST(Config, TellsWhatIsWrongWithADeviceThatOthersServe) {
+  EXPECT_EQ(error_in("device { name: \"a\" virtual {} base { position { x: 1 } } }").field(),
+            "device[0].base");
+  EXPECT_EQ(error_in("device { name: \"a\" external {} }").field(), "device[0].external.path");
+  EXPECT_EQ(error_in("device { name: \"a\" external { path: \"" + std::string(120, 'a') + "\" } }").field(),
+            "device[0].external.path");
+  EXPECT_EQ(error_in("device { name: \"a\" external { path: \"s\" max_force: -1 } }").field(),
+            "device[0].external.max_force");
+  EXPECT_EQ(error_in("device { name: \"a\" external { path: \"s\" user: \"\" } }").field(),
+            "device[0].external.user[0]");
+  EXPECT_STREQ(
+      error_in("device { name: \"a\" external { path: \"s\" } }\n"
+               "device { name: \"b\" external { path: \"../c/s\" } }")
+          .what(),
+      "/c/hapticd.txtpb:2:31: device[1].external.path: \"/c/s\" is also the socket of another device");
+}
+
+TEST(Config, TellsWhatIsWrongWithAnInjectedFault) {
+  const auto field_of = [](const std::string& fault) {
+    return error_in("device { name: \"a\" simulated { mass: 1 fault { kind: DROP } fault { " + fault +
+                    " } } }")
+        .field();
+  };
+  const std::string fault = "device[0].simulated.fault[1]";
+  EXPECT_EQ(field_of("at: 1"), fault + ".kind");
+  EXPECT_EQ(field_of("kind: DROP at: -1"), fault + ".at");
+  EXPECT_EQ(field_of("kind: DROP duration: -1"), fault + ".duration");
+  EXPECT_EQ(field_of("kind: DELAY"), fault + ".delay");
+  EXPECT_EQ(field_of("kind: DELAY delay: 1.5"), fault + ".delay");
+  EXPECT_EQ(field_of("kind: FREEZE delay: 0.1"), fault + ".delay");
+  EXPECT_EQ(field_of("kind: JUMP"), fault + ".offset");
+  EXPECT_EQ(field_of("kind: JUMP offset { z: 1e7 }"), fault + ".offset.z");
+  EXPECT_EQ(field_of("kind: UNPLUG offset { z: 1 }"), fault + ".offset");
+}
+
 TEST(Config, ListensToThisMachineOnly) {
   for (const char* address : {"127.0.0.1", "127.1.2.3", "::1"}) {
     config_of(std::string("listen { tcp { address: \"") + address + "\" port: 65535 } }");

@@ -204,5 +204,27 @@ TEST_F(Simulate, AConfigThatIsNotThereIsAnError) {
   EXPECT_THROW(run(0.01), load::LoadError);
 }
 
+TEST_F(Simulate, RefusesADeviceThatLivesInRealTime) {
+  folder_.write("config.txtpb", "device { name: \"probe\" virtual {} }\n");
+  try {
+    run(0.01);
+    FAIL() << "no exception";
+  } catch (const load::LoadError& error) {
+    EXPECT_EQ(error.field(), "device[0]");
+    EXPECT_EQ(error.message(), "lives in real time: it cannot follow a virtual clock");
+  }
+}
+
+// 10 mm deep after half a second of 100 N/m: 1 N; then the device is gone.
+TEST_F(Simulate, TellsTheFaultThatWasInjected) {
+  folder_.write("config.txtpb",
+                "device { name: \"probe\" simulated { mass: 0.1 damping: 1\n"
+                "  hand { stiffness: 300 damping: 6 path: \"press.csv\" }\n"
+                "  fault { kind: UNPLUG at: 0.7 } } }\n");
+  EXPECT_NE(run(1.0).find("fault at 0.72 s: stale_sample of probe: 0.021, allowed 0.02; forces are zero"),
+            std::string::npos)
+      << run(1.0);
+}
+
 }  // namespace
 }  // namespace haptic::simulate
