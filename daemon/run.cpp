@@ -1,5 +1,7 @@
 #include "daemon/run.h"
 
+#include <unistd.h>
+
 #include <csignal>
 // Boost.Asio of Debian 12 needs it before
 #include <spdlog/pattern_formatter.h>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,6 +19,7 @@
 #include "daemon/scene_builder.h"
 #include "ipc/server.h"
 #include "load/config_file.h"
+#include "rt/memory_reserve.h"
 #include "rt/tick_clock.h"
 #include "servo/servo_loop.h"
 #include "servo/servo_thread.h"
@@ -27,6 +31,8 @@ namespace haptic {
 namespace {
 
 constexpr std::uint64_t kFirstRevision = 1;
+// for letting go in order when memory has run out: answers and frames that wait, a log line
+constexpr std::size_t kMemoryReserve = std::size_t{16} * 1024 * 1024;
 
 /// The level as journald reads it at the beginning of a line: "<4>" for a warning.
 class JournalLevel final : public spdlog::custom_flag_formatter {
@@ -161,6 +167,7 @@ ipc::ServerSettings server_settings(const RunOptions& options, const v1::DaemonC
 void run(const RunOptions& options) {
   begin_log(options.foreground);
   const StopSignals signals;
+  const rt::MemoryReserve reserve(kMemoryReserve, []() noexcept { ::kill(::getpid(), SIGTERM); });
 
   // what is written in files
   const load::LoadedConfig config = load::load_config(options.config);
@@ -204,6 +211,7 @@ void run(const RunOptions& options) {
   log_rights(servo_thread.report());
   for (const std::string& address : server.addresses()) spdlog::info("listening on {}", address);
   server.run();
+  if (reserve.is_spent()) throw std::runtime_error("memory has run out; forces were let down first");
   spdlog::info("stopped after {} ticks", servo_thread.heartbeat());
 }
 

@@ -138,8 +138,11 @@ UnixListener::UnixListener(const v1::Listen::Unix& config)
 }
 
 UnixListener::~UnixListener() {
-  // before the lock goes: the path is still ours
-  ::unlink(path_.c_str());
+  // before the lock goes: a socket there is still ours
+  struct stat status {};
+  if (::lstat(path_.c_str(), &status) == 0 && S_ISSOCK(status.st_mode)) {
+    ::unlink(path_.c_str());
+  }
 }
 
 void UnixListener::take_lock() {

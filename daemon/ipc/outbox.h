@@ -57,7 +57,7 @@ struct OutgoingFrame {
 
 class Outbox {
  public:
-  explicit Outbox(const OutboxLimits& limits) noexcept : limits_(limits) {}
+  explicit Outbox(const OutboxLimits& limits) : limits_(limits) {}
 
   /// A whole message with its length. False if there is no room: the client must be cut off.
   bool push_control(std::string message);

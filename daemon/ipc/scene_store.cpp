@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "load/embedded_mesh.h"
+#include "rt/memory_reserve.h"
 
 namespace haptic::ipc {
 
@@ -74,7 +75,10 @@ bool SceneStore::is_busy(const Reply& reply) const {
 
 void SceneStore::build(std::function<BuiltScene()> make, Reply reply) {
   reply_ = std::move(reply);
-  building_ = std::async(std::launch::async, std::move(make));
+  building_ = std::async(std::launch::async, [make = std::move(make)] {
+    const rt::MemoryMayRunOut tolerated;
+    return make();
+  });
 }
 
 void SceneStore::poll(SteadyClock::time_point now) {
@@ -85,6 +89,8 @@ void SceneStore::poll(SteadyClock::time_point now) {
     swap(building_.get(), now);
   } catch (const SceneError& error) {
     reply_->fail(error.wire);
+  } catch (const std::bad_alloc&) {
+    reply_->fail(v1::Error::FAILED, "there is not enough memory for this scene");
   } catch (const std::exception& error) {
     reply_->fail(v1::Error::FAILED, error.what());
   }
@@ -112,8 +118,8 @@ void SceneStore::swap(BuiltScene built, SteadyClock::time_point now) {
     reply_->fail(v1::Error::BUSY, "the servo thread has too many commands waiting; try again");
     return;
   }
-  next_running_ = std::move(running);
   static_cast<void>(built.prepared.release());  // the command holds it
+  next_running_ = std::move(running);
   next_ = std::move(built.description);
 }
 

@@ -122,7 +122,7 @@ class Server::Impl {
             return;
           }
           if (error) {
-            spdlog::warn("cannot accept a client: {}", error.message());
+            tell_seldom(next_accept_log_, "cannot accept a client: " + error.message());
             entrance.pause.expires_after(kAcceptPause);
             entrance.pause.async_wait([this, &entrance](const error_code& ended) {
               if (!ended) {
@@ -156,7 +156,7 @@ class Server::Impl {
     const auto on_peer = [this, &entrance](EncryptedPeer peer, const std::string& error) {
       --handshakes_;
       if (!peer.stream) {
-        tell_handshake(error);
+        tell_seldom(next_handshake_log_, "a client over TLS did not get in: " + error);
       } else if (!leaving_) {
         welcome(std::move(peer.stream), certified_peer(peer.names, entrance.allow));
       }
@@ -164,12 +164,12 @@ class Server::Impl {
     entrance.tls->handshake(std::move(socket), settings_.session.hello, on_peer);
   }
 
-  // at most once a second: anybody on the network can cause it
-  void tell_handshake(const std::string& error) {
+  // at most once a second: others can cause it as often as they like
+  static void tell_seldom(SteadyClock::time_point& next, const std::string& warning) {
     const auto now = SteadyClock::now();
-    if (now >= next_handshake_log_) {
-      spdlog::warn("a client over TLS did not get in: {}", error);
-      next_handshake_log_ = now + std::chrono::seconds(1);
+    if (now >= next) {
+      spdlog::warn("{}", warning);
+      next = now + std::chrono::seconds(1);
     }
   }
 
@@ -300,6 +300,7 @@ class Server::Impl {
   std::map<ClientId, std::shared_ptr<Session>> sessions_;
   ClientId last_client_ = 0;
   std::size_t handshakes_ = 0;  // of TLS, under way
+  SteadyClock::time_point next_accept_log_{};
   SteadyClock::time_point next_handshake_log_{};
   asio::steady_timer poll_timer_;
   asio::steady_timer stop_timer_;

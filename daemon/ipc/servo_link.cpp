@@ -50,11 +50,13 @@ bool ServoLink::submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time
 
 bool ServoLink::send(servo::Command command, SteadyClock::time_point deadline, OnCopy on_answer) {
   command.request = last_request_ + 1;
+  // first what may fail: a command that the servo thread has can not be taken back
+  const auto entry = pending_.emplace(command.request, Pending{deadline, std::move(on_answer)}).first;
   if (!mailbox_.commands.push(command)) {
+    pending_.erase(entry);
     return false;
   }
   ++last_request_;
-  pending_.emplace(last_request_, Pending{deadline, std::move(on_answer)});
   return true;
 }
 
