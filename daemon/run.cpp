@@ -187,19 +187,25 @@ void run(const RunOptions& options) {
   servo::ServoThread servo_thread(setup::realtime_settings(config.message.servo()), settings.rate_hz, loop);
 
   // mailbox -> clients, on this thread
-  ipc::Server server(
-      server_settings(options, config.message),
-      {.mailbox = *mailbox,
-       .version = HAPTIC_VERSION,
-       .rate_hz = settings.rate_hz,
-       .devices = describe_devices(devices, settings.limits.max_force),
-       .real_time = describe_rights(servo_thread.report()),
-       .scene = std::move(scene.description),
-       .running = std::move(running),
-       .build_scene = [&](const v1::LoadScene& request) { return builder.from_request(request); },
-       .edit_scene = [&](const v1::EditScene& request,
-                         const ipc::RunningScene& edited) { return builder.from_edit(request, edited); },
-       .place_device = places_of(devices)});
+  ipc::Server server(server_settings(options, config.message),
+                     {.mailbox = *mailbox,
+                      .version = HAPTIC_VERSION,
+                      .rate_hz = settings.rate_hz,
+                      .devices = describe_devices(devices, settings.limits.max_force),
+                      .real_time = describe_rights(servo_thread.report()),
+                      .scene = std::move(scene.description),
+                      .running = std::move(running),
+                      .build_scene =
+                          [&](const v1::LoadScene& request) {
+                            const rt::MemoryMayRunOut tolerated;
+                            return builder.from_request(request);
+                          },
+                      .edit_scene =
+                          [&](const v1::EditScene& request, const ipc::RunningScene& edited) {
+                            const rt::MemoryMayRunOut tolerated;
+                            return builder.from_edit(request, edited);
+                          },
+                      .place_device = places_of(devices)});
   const StopWaiter waiter(signals, [&] {
     spdlog::info("stopping");
     // first what a hand feels, then what a screen shows

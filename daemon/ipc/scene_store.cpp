@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "load/embedded_mesh.h"
-#include "rt/memory_reserve.h"
 
 namespace haptic::ipc {
 
@@ -75,10 +74,7 @@ bool SceneStore::is_busy(const Reply& reply) const {
 
 void SceneStore::build(std::function<BuiltScene()> make, Reply reply) {
   reply_ = std::move(reply);
-  building_ = std::async(std::launch::async, [make = std::move(make)] {
-    const rt::MemoryMayRunOut tolerated;
-    return make();
-  });
+  building_ = std::async(std::launch::async, std::move(make));
 }
 
 void SceneStore::poll(SteadyClock::time_point now) {

@@ -219,10 +219,28 @@ class Disk(AdversityTest):
 
 
 class Memory(AdversityTest):
+    def used(self) -> int:
+        """Address space, in bytes."""
+        return int(Path(f"/proc/{self.daemon.pid}/statm").read_text().split()[0]) * resource.getpagesize()
+
+    async def test_a_scene_that_is_too_large_fails_alone(self) -> None:
+        daemon = await self.press()
+        self.limit(resource.RLIMIT_AS, self.used() + 256 * 1024 * 1024)
+        scene = v1.Scene(name="dust", material=[v1.Material(name="air", free={}),
+                                                v1.Material(name="stone", density=2000, rigid={})])
+        for i in range(60):
+            ball = scene.object.add(name=f"ball{i}", inside="stone", outside="air", air_margin=0.01)
+            ball.shape.icosphere.radius = 0.01
+            ball.shape.icosphere.subdivisions = 6
+            ball.pose.position.x = 0.1 * i
+        with self.assertRaisesRegex(haptic.Error, "not enough memory"):
+            await daemon.load_scene(scene)
+        await self.wait_for_force(daemon, 1.0)
+        await self.expect_service()
+
     async def test_when_it_has_run_out_the_daemon_ends_in_order_and_tells_why(self) -> None:
         await self.press()
-        used = int(Path(f"/proc/{self.daemon.pid}/statm").read_text().split()[0]) * resource.getpagesize()
-        self.limit(resource.RLIMIT_AS, used + 1024 * 1024)
+        self.limit(resource.RLIMIT_AS, self.used() + 1024 * 1024)
         async with asyncio.timeout(PATIENCE):
             while self.daemon.poll() is None:
                 # frames pile up for those who do not read them
