@@ -2,11 +2,11 @@
 // What the arguments of a verb say of an object, a material or a finger: changes to a message, in the order
 // in which the options are declared. A new one begins empty, one that is set begins as it is in the scene.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "client/cli/options.h"
 #include "haptic/v1/scene.pb.h"
 
 namespace haptic::cli {

@@ -43,24 +43,28 @@ client::Connection& Command::connect(std::chrono::milliseconds patience) const {
 }
 
 void add_common_options(CLI::App& app, Command& command) {
-  app.add_flag("--json", command.json, "print protobuf JSON, one object a line");
-  app.add_option("--socket", command.address, "the daemon's socket: a path, or host:port")
-      ->type_name("ADDRESS");
-  app.add_option("--server", command.server, "a daemon elsewhere: host:port")->type_name("ADDRESS");
-  app.add_option("--certificate", command.identity.certificate, "for TLS: your certificate")
-      ->type_name("FILE");
-  app.add_option("--key", command.identity.key, "for TLS: its key")->type_name("FILE");
-  app.add_option("--authority", command.identity.authority,
-                 "for TLS: who must have signed the daemon's certificate")
-      ->type_name("FILE");
+  add_flag(app, "--json", command.json, "print protobuf JSON, one object a line");
+  add_option(app, "--socket", command.address, "the daemon's socket: a path, or host:port").type("ADDRESS");
+  add_option(app, "--server", command.server, "a daemon elsewhere: host:port").type("ADDRESS");
+  add_option(app, "--certificate", command.identity.certificate, "for TLS: your certificate").type("FILE");
+  add_option(app, "--key", command.identity.key, "for TLS: its key").type("FILE");
+  add_option(app, "--authority", command.identity.authority,
+             "for TLS: who must have signed the daemon's certificate")
+      .type("FILE");
 }
 
-CLI::App* add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
+CLI::App& add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
                    Action action) {
-  CLI::App* verb = parent.add_subcommand(name, help);
-  add_common_options(*verb, command);
-  verb->callback([&command, action = std::move(action)] { command.action = action; });
+  CLI::App& verb =
+      add_verb(parent, name, help, [&command, action = std::move(action)] { command.action = action; });
+  add_common_options(verb, command);
   return verb;
+}
+
+CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name, const std::string& help) {
+  CLI::App& family = add_family(parent, name, help);
+  add_common_options(family, command);
+  return family;
 }
 
 void print_json(const google::protobuf::Message& message) {

@@ -1,7 +1,6 @@
 #pragma once
 // What one run of hapticctl is: the options that every verb has, the verb that was chosen, and how it speaks.
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "client/cli/exit_code.h"
+#include "client/cli/parser.h"
 #include "client/lib/connection.h"
 
 namespace haptic::cli {
@@ -42,8 +42,11 @@ struct Command {
 
 /// Adds a verb that runs `action`. It has the common options as hapticctl itself does, so that they may
 /// stand on either side of the verb.
-CLI::App* add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
+CLI::App& add_verb(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
                    Action action);
+
+/// Adds a verb that has others below it, and the common options.
+CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name, const std::string& help);
 
 /// Adds --json, and where the daemon is.
 void add_common_options(CLI::App& app, Command& command);

@@ -38,37 +38,6 @@ constexpr const char* kBashTail = R"shell(
 complete -F _hapticctl hapticctl
 )shell";
 
-void collect(const CLI::App& app, const std::string& path, std::vector<CompletedVerb>& verbs) {
-  const std::size_t mine = verbs.size();
-  verbs.push_back({path, app.get_description(), {}, {}, "", ""});
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_positional()) {
-      if (verbs[mine].value.empty()) {
-        verbs[mine].value = option->get_type_name();
-      } else if (verbs[mine].next_value.empty() && verbs[mine].value.find('|') != std::string::npos) {
-        verbs[mine].next_value = option->get_type_name();
-      }
-      continue;
-    }
-    CompletedOption& known = verbs[mine].options.emplace_back();
-    for (const std::string& name : option->get_snames()) {
-      known.names.push_back("-" + name);
-    }
-    for (const std::string& name : option->get_lnames()) {
-      known.names.push_back("--" + name);
-    }
-    known.help = option->get_description();
-    known.value = option->get_items_expected_max() > 0 ? option->get_type_name() : "";
-  }
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!verb->get_group().empty()) {
-      const std::string below = path.empty() ? verb->get_name() : path + " " + verb->get_name();
-      verbs[mine].verbs.push_back(below);
-      collect(*verb, below, verbs);
-    }
-  }
-}
-
 // words to choose from, separated by spaces; empty for kinds that are none
 std::string choices(const std::string& kind) {
   std::string words = kind.find('|') == std::string::npos ? "" : kind;
@@ -77,12 +46,6 @@ std::string choices(const std::string& kind) {
 }
 
 }  // namespace
-
-std::vector<CompletedVerb> completed_verbs(const CLI::App& app) {
-  std::vector<CompletedVerb> verbs;
-  collect(app, "", verbs);
-  return verbs;
-}
 
 std::string last_word(const std::string& path) { return path.substr(path.rfind(' ') + 1); }
 

@@ -2,29 +2,12 @@
 // Scripts with which shells complete hapticctl's arguments, made from its own parser, so that they know what
 // it knows. Names of objects and the like they ask of the running daemon, through the hidden verb __names.
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "client/cli/parser.h"
+
 namespace haptic::cli {
-
-struct CompletedOption {
-  std::vector<std::string> names;  // with their dashes
-  std::string help;
-  std::string value;  // what follows it: a kind, see values_of(); empty: nothing
-};
-
-struct CompletedVerb {
-  std::string path;  // "object add"; empty: hapticctl itself
-  std::string help;
-  std::vector<std::string> verbs;  // the paths of those below
-  std::vector<CompletedOption> options;
-  std::string value;       // the kind of its first argument without a dash
-  std::string next_value;  // of its second, if the first is one of some words
-};
-
-/// All verbs that help shows, each before those below it.
-std::vector<CompletedVerb> completed_verbs(const CLI::App& app);
 
 /// The last word of a path.
 std::string last_word(const std::string& path);

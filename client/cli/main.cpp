@@ -1,10 +1,10 @@
 // hapticctl: talks to hapticd. Results go to standard output, errors to standard error, and what became of it
 // to the exit code (exit_code.h).
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
-#include "client/cli/usage.h"
 #include "client/cli/verbs.h"
 
 namespace haptic::cli {
@@ -12,14 +12,14 @@ namespace {
 
 int run(int argc, char** argv) {
   Command command;
-  const std::unique_ptr<CLI::App> app = make_app(command);
+  const Parser app = make_app(command);
   try {
-    app->parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      return app->exit(error);  // --help, --version
+    if (const auto text = parse(*app, {argv + std::min(argc, 1), argv + argc})) {
+      std::fwrite(text->data(), 1, text->size(), stdout);
+      return kDone;
     }
-    std::fprintf(stderr, "hapticctl: %s; see hapticctl --help\n", in_words(error, *app).c_str());
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "hapticctl: %s; see hapticctl --help\n", error.what());
     return kUsage;
   }
   try {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "client/cli/usage.h"
 #include "client/cli/verbs.h"
 
 namespace haptic::cli {
@@ -76,24 +75,14 @@ std::string parse_verb(const std::vector<std::string>& words, Command& command) 
   }
   const std::string address = command.address;
   const std::string server = command.server;
-  const std::unique_ptr<CLI::App> app = make_app(command);
-  // CLI11 takes the words from the end
-  std::vector<std::string> reversed(words.rbegin(), words.rend());
-  try {
-    app->parse(reversed);
-  } catch (const CLI::ParseError& error) {
-    throw std::invalid_argument(error.get_exit_code() == 0 ? "help is not for scripts"
-                                                           : in_words(error, *app));
+  const Parser app = make_app(command);
+  if (parse(*app, words)) {
+    throw std::invalid_argument("help is not for scripts");
   }
   if (command.address != address || command.server != server) {
     throw std::invalid_argument("a script talks to one daemon: --socket and --server belong before its name");
   }
-  std::string verb;
-  for (const CLI::App* at = app.get(); !at->get_subcommands().empty();) {
-    at = at->get_subcommands().front();
-    verb += (verb.empty() ? "" : " ") + at->get_name();
-  }
-  return verb;
+  return chosen_verb(*app);
 }
 
 }  // namespace haptic::cli

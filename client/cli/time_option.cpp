@@ -20,8 +20,7 @@ std::string to_seconds(std::string& text) {
     number.pop_back();
   }
   double value = 0.0;
-  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value < 0.0 ||
-      value * unit > kLongest) {
+  if (!read_number(number, value) || !std::isfinite(value) || value < 0.0 || value * unit > kLongest) {
     return "'" + text + "' is no time: 2s, 2 or 200ms is expected";
   }
   text = fmt::format("{}", value * unit);
@@ -32,7 +31,7 @@ std::string to_seconds(std::string& text) {
 
 void add_time(CLI::App& verb, const std::string& name, std::optional<double>& seconds,
               const std::string& help) {
-  verb.add_option(name, seconds, help)->transform(CLI::Validator(to_seconds, ""))->type_name("TIME");
+  add_option(verb, name, seconds, help).transform(to_seconds).type("TIME");
 }
 
 }  // namespace haptic::cli

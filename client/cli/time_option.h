@@ -1,9 +1,10 @@
 #pragma once
 // Options that are times since the start of a file: "2s", "2" or "200ms".
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+
+#include "client/cli/options.h"
 
 namespace haptic::cli {
 

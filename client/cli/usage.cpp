@@ -1,7 +1,5 @@
 #include "client/cli/usage.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -30,17 +28,6 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::vector<std::string> verbs_of(const CLI::App& app) {
-  const std::vector<const CLI::App*> verbs =
-      app.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
-  std::vector<std::string> names;
-  names.reserve(verbs.size());
-  for (const CLI::App* verb : verbs) {
-    names.push_back(verb->get_name());
-  }
-  return names;
-}
-
 }  // namespace
 
 std::vector<std::string> near_to(const std::string& word, const std::vector<std::string>& names) {
@@ -62,23 +49,6 @@ std::vector<std::string> near_to(const std::string& word, const std::vector<std:
     nearest.push_back(std::move(name));
   }
   return nearest;
-}
-
-std::string in_words(const CLI::ParseError& error, const CLI::App& app) {
-  const CLI::App* at = &app;
-  while (!at->get_subcommands().empty()) {
-    at = at->get_subcommands().front();
-  }
-  const std::vector<std::string> unread = at->remaining();
-  const auto word = std::find_if(unread.begin(), unread.end(),
-                                 [](const std::string& each) { return each.rfind('-', 0) != 0; });
-  if (at->get_require_subcommand_min() == 0 || word == unread.end()) {
-    return error.what();
-  }
-  const std::string whole = at == &app ? *word : at->get_name() + " " + *word;
-  const std::vector<std::string> near = near_to(*word, verbs_of(*at));
-  return fmt::format("there is no verb \"{}\"{}", whole,
-                     near.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(near, " or ")));
 }
 
 }  // namespace haptic::cli

@@ -1,15 +1,10 @@
 #pragma once
-// What is wrong with a command line, for a person.
+// What was meant by a word that is none.
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 namespace haptic::cli {
-
-/// The parser's own words; of a verb that is not there its name, and those that it may have been meant to be.
-/// `app` has just failed to parse with `error`.
-std::string in_words(const CLI::ParseError& error, const CLI::App& app);
 
 /// Those of `names` that begin with `word`, or are a slip or two of the keyboard away from it: the nearest
 /// first, at most three.

@@ -65,19 +65,19 @@ void add_certificates(CLI::App& app, Command& command) {
     client::CertificatePlan plan;
   };
   const auto choice = std::make_shared<Choice>();
-  CLI::App* verb = add_verb(app, command, "certificates",
+  CLI::App& verb = add_verb(app, command, "certificates",
                             "make an authority and certificates, for clients on other machines",
                             [choice](Command& chosen) {
                               choice->plan.folder = choice->folder;
                               return make(chosen, choice->plan);
                             });
-  verb->add_option("folder", choice->folder, "where the files go; nothing is overwritten")->required();
-  verb->add_option("--server-name", choice->plan.server_names,
-                   "the daemon's host, by name or IP address; repeatable")
-      ->required()
-      ->type_name("NAME");
-  verb->add_option("--client", choice->plan.clients, "a client's name, as the config allows it; repeatable")
-      ->type_name("NAME");
+  add_option(verb, "folder", choice->folder, "where the files go; nothing is overwritten").required();
+  add_option(verb, "--server-name", choice->plan.server_names,
+             "the daemon's host, by name or IP address; repeatable")
+      .required()
+      .type("NAME");
+  add_option(verb, "--client", choice->plan.clients, "a client's name, as the config allows it; repeatable")
+      .type("NAME");
 }
 
 }  // namespace haptic::cli

@@ -12,7 +12,7 @@ constexpr const char* kShells = "bash|zsh|fish";
 
 ExitCode print_completion(const std::string& shell) {
   Command unused;
-  const std::unique_ptr<CLI::App> app = make_app(unused);
+  const Parser app = make_app(unused);
   const std::vector<CompletedVerb> verbs = completed_verbs(*app);
   const std::string script = shell == "bash"  ? bash_completion(verbs)
                              : shell == "zsh" ? zsh_completion(verbs)
@@ -66,25 +66,25 @@ ExitCode print_names(Command& command, const std::string& kind) {
 
 void add_completion(CLI::App& app, Command& command) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* completion =
+  CLI::App& completion =
       add_verb(app, command, "completion", "a script with which a shell completes arguments",
                [shell](Command&) { return print_completion(*shell); });
-  completion->add_option("shell", *shell, "for which shell")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
-      ->type_name(kShells);
-  completion->footer(
-      "bash: hapticctl completion bash > ~/.local/share/bash-completion/completions/hapticctl\n"
-      "zsh:  hapticctl completion zsh > a file _hapticctl in a folder of $fpath\n"
-      "fish: hapticctl completion fish > ~/.config/fish/completions/hapticctl.fish");
+  add_option(completion, "shell", *shell, "for which shell")
+      .required()
+      .one_of({"bash", "zsh", "fish"})
+      .type(kShells);
+  set_footer(completion,
+             "bash: hapticctl completion bash > ~/.local/share/bash-completion/completions/hapticctl\n"
+             "zsh:  hapticctl completion zsh > a file _hapticctl in a folder of $fpath\n"
+             "fish: hapticctl completion fish > ~/.config/fish/completions/hapticctl.fish");
 
   const auto kind = std::make_shared<std::string>();
-  CLI::App* names = add_verb(app, command, "__names", "names that completion asks for",
+  CLI::App& names = add_verb(app, command, "__names", "names that completion asks for",
                              [kind](Command& chosen) { return print_names(chosen, *kind); });
-  names->group("");
-  names->add_option("kind", *kind, "OBJECT, FINGER, DEVICE or MATERIAL")
-      ->required()
-      ->check(CLI::IsMember({"OBJECT", "FINGER", "DEVICE", "MATERIAL"}).description(""));
+  hide(names);
+  add_option(names, "kind", *kind, "OBJECT, FINGER, DEVICE or MATERIAL")
+      .required()
+      .one_of({"OBJECT", "FINGER", "DEVICE", "MATERIAL"});
 }
 
 }  // namespace haptic::cli

@@ -16,7 +16,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPeriod{5};  // of the poses; a quarter of the default of safety.max_sample_age
+constexpr double kLongest = 86400.0;  // s
+constexpr milliseconds kPeriod{5};    // of the poses; a quarter of the default of safety.max_sample_age
 
 struct MoveOptions {
   std::string name;
@@ -123,22 +124,20 @@ ExitCode move(Command& command, const MoveOptions& options) {
 }  // namespace
 
 void add_device(CLI::App& app, Command& command) {
-  CLI::App* device = app.add_subcommand("device", "move a virtual device");
-  device->require_subcommand(1);
-  add_common_options(*device, command);
+  CLI::App& device = add_family(app, command, "device", "move a virtual device");
   const auto options = std::make_shared<MoveOptions>();
-  CLI::App* verb = add_verb(*device, command, "move", "tell where a virtual device is, for a while",
+  CLI::App& verb = add_verb(device, command, "move", "tell where a virtual device is, for a while",
                             [options](Command& chosen) { return move(chosen, *options); });
-  verb->add_option("name", options->name, "which")->required()->type_name("DEVICE");
-  add_pose_options(*verb, [options](const PoseChange& change) { change(options->pose); });
-  verb->get_option("--at")->required();
-  const CLI::Validator some_time = CLI::Range(0.0, 86400.0).description("");
-  verb->add_option("--over", options->over, "straight from where it is, within so long; default: at once")
-      ->check(some_time)
-      ->type_name("SECONDS");
-  verb->add_option("--hold", options->hold, "stay there for so long")->check(some_time)->type_name("SECONDS");
-  verb->add_option("--buttons", options->buttons, "those that are down: bit n for button n")->type_name("N");
-  device->footer(
+  add_option(verb, "name", options->name, "which").required().type("DEVICE");
+  add_pose_options(verb, [options](const PoseChange& change) { change(options->pose); });
+  find_option(verb, "--at").required();
+  add_option(verb, "--over", options->over, "straight from where it is, within so long; default: at once")
+      .between(0.0, kLongest)
+      .type("SECONDS");
+  add_option(verb, "--hold", options->hold, "stay there for so long").between(0.0, kLongest).type("SECONDS");
+  add_option(verb, "--buttons", options->buttons, "those that are down: bit n for button n").type("N");
+  set_footer(
+      device,
       "hapticctl device move mouse --at 0 0.02 0 --over 1 --hold 5\n"
       "The pose is told 200 times a second. Afterwards nobody tells it any more: the device counts as lost, "
       "and\n"

@@ -99,33 +99,30 @@ ExitCode run_export(const Command& command, const ExportOptions& options) {
 
 void add_export(CLI::App& app, Command& command) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* verb = add_verb(app, command, "export", "a recording as a table for other programs: CSV or HDF5",
+  CLI::App& verb = add_verb(app, command, "export", "a recording as a table for other programs: CSV or HDF5",
                             [options](Command& chosen) { return run_export(chosen, *options); });
-  verb->add_option("recording", options->recording, "a .mcap")->required()->type_name("FILE");
-  std::map<std::string, Topic> topics;
+  add_option(verb, "recording", options->recording, "a .mcap").required().type("FILE");
+  Words<Topic> topics;
   for (const Topic topic : {Topic::kHips, Topic::kObjects, Topic::kDevices, Topic::kContacts, Topic::kEvents,
                             Topic::kStats, Topic::kGaps}) {
     topics.emplace(exporting::name_of(topic), topic);
   }
-  verb->add_option(
-          "--topic", options->topics,
-          "hips, objects, devices, contacts, events, stats, gaps; default: all that the recording has")
-      ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
-      ->type_name("TOPIC")
-      ->delimiter(',');
-  add_time(*verb, "--from", options->from, "only what is so long after the recording's start, or later");
-  add_time(*verb, "--to", options->to, "only what is before that");
-  verb->add_option("-o,--output", options->output,
-                   "a .csv, which holds one topic, or a .h5, with a group for each")
-      ->required()
-      ->type_name("FILE")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            const bool good = text.ends_with(".csv") || text.ends_with(".h5") || text.ends_with(".hdf5");
-            return good ? std::string() : "'" + text + "' ends in neither .csv nor .h5";
-          },
-          ""));
-  verb->add_flag("--force", options->force, "replace the file if there is one");
+  add_choices(verb, "--topic", options->topics,
+              "hips, objects, devices, contacts, events, stats, gaps; default: all that the recording has",
+              topics)
+      .type("TOPIC")
+      .separated_by(',');
+  add_time(verb, "--from", options->from, "only what is so long after the recording's start, or later");
+  add_time(verb, "--to", options->to, "only what is before that");
+  add_option(verb, "-o,--output", options->output,
+             "a .csv, which holds one topic, or a .h5, with a group for each")
+      .required()
+      .type("FILE")
+      .check([](const std::string& text) {
+        const bool good = text.ends_with(".csv") || text.ends_with(".h5") || text.ends_with(".hdf5");
+        return good ? std::string() : "'" + text + "' ends in neither .csv nor .h5";
+      });
+  add_flag(verb, "--force", options->force, "replace the file if there is one");
 }
 
 }  // namespace haptic::cli

@@ -42,9 +42,9 @@ ExitCode show_fingers(Command& command, bool hips) {
 
 void add_fingers(CLI::App& app, Command& command) {
   const auto hips = std::make_shared<bool>(false);
-  add_verb(app, command, "fingers", "the fingers and what they feel now", [hips](Command& chosen) {
-    return show_fingers(chosen, *hips);
-  })->add_flag("--hips", *hips, "each HIP in contact, too");
+  CLI::App& verb = add_verb(app, command, "fingers", "the fingers and what they feel now",
+                            [hips](Command& chosen) { return show_fingers(chosen, *hips); });
+  add_flag(verb, "--hips", *hips, "each HIP in contact, too");
 }
 
 }  // namespace haptic::cli

@@ -8,21 +8,17 @@
 namespace haptic::cli {
 
 void add_gravity(CLI::App& app, Command& command) {
-  CLI::App* gravity = app.add_subcommand("gravity", "set gravity");
-  gravity->require_subcommand(1);
-  add_common_options(*gravity, command);
+  CLI::App& gravity = add_family(app, command, "gravity", "set gravity");
   const auto value = std::make_shared<v1::Vector3>();
-  CLI::App* verb =
-      add_verb(*gravity, command, "set", "what pulls at dynamic objects", [value](Command& chosen) {
+  CLI::App& verb =
+      add_verb(gravity, command, "set", "what pulls at dynamic objects", [value](Command& chosen) {
         v1::SceneEdit edit;
         *edit.mutable_set_gravity() = *value;
         return send_edit(chosen, edit,
                          fmt::format("gravity is {} {} {} m/s^2", value->x(), value->y(), value->z()));
       });
   const auto axis = [&](const char* name, void (v1::Vector3::*set)(double)) {
-    verb->add_option_function<double>(
-            name, [value, set](double number) { ((*value).*set)(number); }, "m/s^2")
-        ->required();
+    add_number(verb, name, "m/s^2", [value, set](double number) { ((*value).*set)(number); }).required();
   };
   axis("x", &v1::Vector3::set_x);
   axis("y", &v1::Vector3::set_y);

@@ -156,21 +156,22 @@ ExitCode hold(Command& command, const LeaseOptions& options) {
 
 void add_lease(CLI::App& app, Command& command) {
   const auto options = std::make_shared<LeaseOptions>();
-  CLI::App* verb = add_verb(app, command, "lease", "hold the drive lease: nobody else can arm meanwhile",
+  CLI::App& verb = add_verb(app, command, "lease", "hold the drive lease: nobody else can arm meanwhile",
                             [options](Command& chosen) { return hold(chosen, *options); });
-  CLI::Option* seconds =
-      verb->add_option("--seconds", options->seconds, "release it after so long; default: on Ctrl-C")
-          ->check(CLI::PositiveNumber);
-  verb->add_option("--heartbeat", options->heartbeat_ms,
-                   "the longest silence until it is lost; default: that of the daemon's config")
-      ->check(CLI::Range(1U, 3'600'000U))
-      ->type_name("MS");
-  verb->add_flag("--arm", options->arm, "allow force while it is held, and forbid it before it is released");
-  verb->add_option("command", options->program,
-                   "after --: hold it while this runs, and exit with its exit code")
-      ->type_name("COMMAND")
-      ->excludes(seconds);
-  verb->footer(
+  const Option seconds =
+      add_option(verb, "--seconds", options->seconds, "release it after so long; default: on Ctrl-C")
+          .positive();
+  add_option(verb, "--heartbeat", options->heartbeat_ms,
+             "the longest silence until it is lost; default: that of the daemon's config")
+      .between(1U, 3'600'000U, Told::kInHelp)
+      .type("MS");
+  add_flag(verb, "--arm", options->arm, "allow force while it is held, and forbid it before it is released");
+  add_option(verb, "command", options->program,
+             "after --: hold it while this runs, and exit with its exit code")
+      .type("COMMAND")
+      .excludes(seconds);
+  set_footer(
+      verb,
       "If hapticctl dies or falls silent, forces go down and a fault is latched, or what drive.on_loss of "
       "the\n"
       "daemon's config says. If the lease is lost COMMAND gets SIGTERM.\n"

@@ -43,11 +43,9 @@ void add_pause(CLI::App& app, Command& command) {
   add_verb(app, command, "pause", "hold the scene still", pause);
   add_verb(app, command, "resume", "let it go on", resume);
   const auto ticks = std::make_shared<std::uint64_t>(1);
-  add_verb(app, command, "step", "run some ticks while paused",
-           [ticks](Command& chosen) { return step(chosen, *ticks); })
-      ->add_option("ticks", *ticks, "how many")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  CLI::App& verb = add_verb(app, command, "step", "run some ticks while paused",
+                            [ticks](Command& chosen) { return step(chosen, *ticks); });
+  add_option(verb, "ticks", *ticks, "how many").positive().show_default();
 }
 
 }  // namespace haptic::cli

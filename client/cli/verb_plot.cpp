@@ -137,53 +137,50 @@ ExitCode plot_file(const PlotOptions& options) {
 }
 
 void add_options(CLI::App& verb, PlotOptions& options) {
-  const std::map<std::string, plot::Forces::Of> topics = {{"hips", plot::Forces::Of::kFingers},
-                                                          {"devices", plot::Forces::Of::kDevices},
-                                                          {"objects", plot::Forces::Of::kObjects}};
-  verb.add_option("-o,--output", options.output, "the picture, .svg or .png")->required()->type_name("FILE");
-  verb.add_option("--title", options.title, "instead of one that tells the kind")->type_name("TEXT");
-  verb.add_option(
-          "--topic", options.of,
-          "for the force in a recording: of fingers, devices or objects; default: the first that it has")
-      ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
-      ->type_name("hips|devices|objects");
+  const Words<plot::Forces::Of> topics = {{"hips", plot::Forces::Of::kFingers},
+                                          {"devices", plot::Forces::Of::kDevices},
+                                          {"objects", plot::Forces::Of::kObjects}};
+  add_option(verb, "-o,--output", options.output, "the picture, .svg or .png").required().type("FILE");
+  add_option(verb, "--title", options.title, "instead of one that tells the kind").type("TEXT");
+  add_choice(verb, "--topic", options.of,
+             "for the force in a recording: of fingers, devices or objects; default: the first that it has",
+             topics)
+      .type("hips|devices|objects");
   add_time(verb, "--at", options.at, "for hips: the last tick not after it; default: the last of all");
   add_time(verb, "--from", options.from, "only what is at this time or later; 2s, 2 or 200ms");
   add_time(verb, "--to", options.to, "only what is before that");
-  verb.add_option("--normal", options.normal, "for friction: of the surface, in the world; default: 0 1 0")
-      ->expected(3)
-      ->type_name("X Y Z");
-  verb.add_option("--size", options.size, "in pixels; default: 720 400")
-      ->expected(2)
-      ->check(CLI::Range(100U, 10000U).description(""))
-      ->type_name("WIDTH HEIGHT");
+  add_option(verb, "--normal", options.normal, "for friction: of the surface, in the world; default: 0 1 0")
+      .values(3)
+      .type("X Y Z");
+  add_option(verb, "--size", options.size, "in pixels; default: 720 400")
+      .values(2)
+      .between(100U, 10000U)
+      .type("WIDTH HEIGHT");
 }
 
 }  // namespace
 
 void add_plot(CLI::App& app, Command& command) {
   const auto options = std::make_shared<PlotOptions>();
-  CLI::App* verb = add_verb(app, command, "plot", "draw what a file holds, with gnuplot",
+  CLI::App& verb = add_verb(app, command, "plot", "draw what a file holds, with gnuplot",
                             [options](Command&) { return plot_file(*options); });
-  const std::map<std::string, Kind> kinds = {{"force", Kind::kForce},
-                                             {"friction", Kind::kFriction},
-                                             {"hips", Kind::kHips},
-                                             {"transitions", Kind::kTransitions},
-                                             {"latency", Kind::kLatency}};
-  verb->add_option(
-          "kind", options->kind,
-          "force over time; friction: tangential over normal force; hips: force of each HIP at a time; "
-          "transitions and latency: mean times, and how many ticks took longer")
-      ->required()
-      ->transform(CLI::CheckedTransformer(kinds, CLI::ignore_case).description(""))
-      ->type_name("force|friction|hips|transitions|latency");
-  verb->add_option(
-          "input", options->input,
-          "a recording (.mcap), whose times are since its start; or a CSV file of hapticd simulate, for "
-          "transitions and latency what hapticctl --json stats printed")
-      ->required()
-      ->type_name("FILE");
-  add_options(*verb, *options);
+  const Words<Kind> kinds = {{"force", Kind::kForce},
+                             {"friction", Kind::kFriction},
+                             {"hips", Kind::kHips},
+                             {"transitions", Kind::kTransitions},
+                             {"latency", Kind::kLatency}};
+  add_choice(verb, "kind", options->kind,
+             "force over time; friction: tangential over normal force; hips: force of each HIP at a time; "
+             "transitions and latency: mean times, and how many ticks took longer",
+             kinds)
+      .required()
+      .type("force|friction|hips|transitions|latency");
+  add_option(verb, "input", options->input,
+             "a recording (.mcap), whose times are since its start; or a CSV file of hapticd simulate, for "
+             "transitions and latency what hapticctl --json stats printed")
+      .required()
+      .type("FILE");
+  add_options(verb, *options);
 }
 
 }  // namespace haptic::cli

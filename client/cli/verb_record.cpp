@@ -286,26 +286,26 @@ class Recorder {
 void add_record(CLI::App& app, Command& command) {
   const auto options = std::make_shared<RecordOptions>();
   options->topics = {v1::OBJECTS, v1::HIPS, v1::DEVICES, v1::EVENTS, v1::STATS};
-  CLI::App* verb = add_verb(app, command, "record", "writes what happens to an MCAP file; Ctrl-C ends it",
+  CLI::App& verb = add_verb(app, command, "record", "writes what happens to an MCAP file; Ctrl-C ends it",
                             [options](Command& chosen) { return Recorder(chosen, *options).run(); });
-  verb->add_option("file", options->file, "the recording")->required()->type_name("FILE");
-  verb->add_option("--seconds", options->seconds, "end after so long")->check(CLI::PositiveNumber);
-  const std::map<std::string, v1::Topic> topics = {{"objects", v1::OBJECTS},
-                                                   {"hips", v1::HIPS},
-                                                   {"devices", v1::DEVICES},
-                                                   {"events", v1::EVENTS},
-                                                   {"stats", v1::STATS}};
-  verb->add_option("--topic,--topics", options->topics, "objects, hips, devices, events, stats; default: all")
-      ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
-      ->type_name("TOPIC")
-      ->delimiter(',');
-  verb->add_option("--decimation", options->decimation, "one frame for so many ticks; default: each tick")
-      ->check(CLI::PositiveNumber)
-      ->type_name("N");
-  verb->add_flag("--replace", options->replace, "the file may be there already; it is lost then");
-  verb->add_flag("--no-inputs", options->no_inputs,
-                 "without the inputs of each tick, the state and the meshes; it cannot be replayed then");
-  verb->add_flag("--no-viewers", options->no_viewers, "without the topics that are for viewers alone");
+  add_option(verb, "file", options->file, "the recording").required().type("FILE");
+  add_option(verb, "--seconds", options->seconds, "end after so long").positive();
+  const Words<v1::Topic> topics = {{"objects", v1::OBJECTS},
+                                   {"hips", v1::HIPS},
+                                   {"devices", v1::DEVICES},
+                                   {"events", v1::EVENTS},
+                                   {"stats", v1::STATS}};
+  add_choices(verb, "--topic,--topics", options->topics,
+              "objects, hips, devices, events, stats; default: all", topics)
+      .type("TOPIC")
+      .separated_by(',');
+  add_option(verb, "--decimation", options->decimation, "one frame for so many ticks; default: each tick")
+      .positive()
+      .type("N");
+  add_flag(verb, "--replace", options->replace, "the file may be there already; it is lost then");
+  add_flag(verb, "--no-inputs", options->no_inputs,
+           "without the inputs of each tick, the state and the meshes; it cannot be replayed then");
+  add_flag(verb, "--no-viewers", options->no_viewers, "without the topics that are for viewers alone");
 }
 
 }  // namespace haptic::cli

@@ -267,19 +267,16 @@ ExitCode recover_file(Command& command, const std::string& file, const std::stri
 
 void add_recording(CLI::App& app, Command& command) {
   const auto info = std::make_shared<std::string>();
-  add_verb(app, command, "info", "what is in a recording, and whether it is whole",
-           [info](Command& chosen) { return show_info(chosen, *info); })
-      ->add_option("file", *info, "the recording")
-      ->required()
-      ->type_name("FILE");
+  CLI::App& tell = add_verb(app, command, "info", "what is in a recording, and whether it is whole",
+                            [info](Command& chosen) { return show_info(chosen, *info); });
+  add_option(tell, "file", *info, "the recording").required().type("FILE");
   const auto broken = std::make_shared<std::string>();
   const auto out = std::make_shared<std::string>();
-  CLI::App* const recover =
+  CLI::App& recover =
       add_verb(app, command, "recover", "makes a whole recording of one that was cut off or is damaged",
                [broken, out](Command& chosen) { return recover_file(chosen, *broken, *out); });
-  recover->add_option("file", *broken, "the recording; it is left as it is")->required()->type_name("FILE");
-  recover->add_option("-o,--output", *out, "the new one; default: beside it, .recovered.mcap")
-      ->type_name("FILE");
+  add_option(recover, "file", *broken, "the recording; it is left as it is").required().type("FILE");
+  add_option(recover, "-o,--output", *out, "the new one; default: beside it, .recovered.mcap").type("FILE");
 }
 
 }  // namespace haptic::cli

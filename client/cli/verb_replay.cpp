@@ -54,11 +54,12 @@ ExitCode replay(const Command& command, const std::string& file) {
 
 void add_replay(CLI::App& app, Command& command) {
   const auto file = std::make_shared<std::string>();
-  CLI::App* verb =
+  CLI::App& verb =
       add_verb(app, command, "replay", "run a recording again and compare every tick, to the bit",
                [file](Command& chosen) { return replay(chosen, *file); });
-  verb->add_option("file", *file, "a recording, as record writes it")->required()->type_name("FILE");
-  verb->footer(
+  add_option(verb, "file", *file, "a recording, as record writes it").required().type("FILE");
+  set_footer(
+      verb,
       "The inputs of the recording go through the tick of hapticd, which must be installed here; no daemon "
       "need\n"
       "run. After each tick the hash of the state is compared with the recorded one, and the first that "

@@ -54,18 +54,16 @@ std::string check_define(const std::string& text) {
 
 void add_run(CLI::App& app, Command& command) {
   const auto options = std::make_shared<RunOptions>();
-  CLI::App* verb = add_verb(app, command, "run", "run a script: one verb a line",
+  CLI::App& verb = add_verb(app, command, "run", "run a script: one verb a line",
                             [options](Command& chosen) { return run(chosen, *options); });
-  verb->add_option("script", options->script, "a file, or - for standard input")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("--define", options->defines,
-                   "a variable of the script, which its own set does not change")
-      ->type_name("NAME=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->check(CLI::Validator(check_define, ""));
-  verb->footer(
+  add_option(verb, "script", options->script, "a file, or - for standard input").required().type("FILE");
+  add_option(verb, "--define", options->defines,
+             "a variable of the script, which its own set does not change")
+      .type("NAME=VALUE")
+      .repeatable()
+      .check(check_define);
+  set_footer(
+      verb,
       "Beside every verb of hapticctl a script has: # comments, set name value, $name, for name in a b ...\n"
       "end, echo, wait 2s, wait until CONDITION for 5s, expect CONDITION, start record FILE, stop record. A "
       "CONDITION is: object NAME.x (y, "

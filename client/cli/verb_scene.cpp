@@ -101,33 +101,31 @@ void add_save(CLI::App& scene, Command& command) {
     bool force = false;
   };
   const auto options = std::make_shared<Save>();
-  CLI::App* verb =
+  CLI::App& verb =
       add_verb(scene, command, "save", "write the scene that runs to a file",
                [options](Command& chosen) { return save(chosen, options->path, options->force); });
-  verb->add_option("file", options->path, "a *.scene.txtpb or *.scene.json")->required()->type_name("FILE");
-  verb->add_flag("--force", options->force, "replace the file if there is one");
+  add_option(verb, "file", options->path, "a *.scene.txtpb or *.scene.json").required().type("FILE");
+  add_flag(verb, "--force", options->force, "replace the file if there is one");
 }
 
 }  // namespace
 
 void add_scene(CLI::App& app, Command& command) {
-  CLI::App* scene = app.add_subcommand("scene", "show, load, save or reset the scene");
-  scene->require_subcommand(1);
-  add_common_options(*scene, command);
-  add_verb(*scene, command, "show", "the scene that runs", show);
-  add_verb(*scene, command, "reset", "all objects back to where they started", reset);
+  CLI::App& scene = add_family(app, command, "scene", "show, load, save or reset the scene");
+  add_verb(scene, command, "show", "the scene that runs", show);
+  add_verb(scene, command, "reset", "all objects back to where they started", reset);
   struct Load {
     std::string path;
     bool send = false;
   };
   const auto options = std::make_shared<Load>();
-  CLI::App* verb = add_verb(*scene, command, "load", "run another scene", [options](Command& chosen) {
+  CLI::App& verb = add_verb(scene, command, "load", "run another scene", [options](Command& chosen) {
     return load(chosen, options->path, options->send);
   });
-  verb->add_option("file", options->path, "a *.scene.txtpb or *.scene.json")->required()->type_name("FILE");
-  verb->add_flag("--send", options->send,
-                 "read the file here, for a daemon that cannot; its shapes must need no mesh file");
-  add_save(*scene, command);
+  add_option(verb, "file", options->path, "a *.scene.txtpb or *.scene.json").required().type("FILE");
+  add_flag(verb, "--send", options->send,
+           "read the file here, for a daemon that cannot; its shapes must need no mesh file");
+  add_save(scene, command);
 }
 
 }  // namespace haptic::cli

@@ -74,9 +74,9 @@ ExitCode show_stats(Command& command, bool reset) {
 
 void add_stats(CLI::App& app, Command& command) {
   const auto reset = std::make_shared<bool>(false);
-  add_verb(app, command, "stats", "how long ticks take, and what HIPs do in them", [reset](Command& chosen) {
-    return show_stats(chosen, *reset);
-  })->add_flag("--reset", *reset, "start to count anew after this");
+  CLI::App& verb = add_verb(app, command, "stats", "how long ticks take, and what HIPs do in them",
+                            [reset](Command& chosen) { return show_stats(chosen, *reset); });
+  add_flag(verb, "--reset", *reset, "start to count anew after this");
 }
 
 }  // namespace haptic::cli

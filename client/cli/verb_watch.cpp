@@ -212,39 +212,39 @@ class Watch {
 void add_watch(CLI::App& app, Command& command) {
   const auto options = std::make_shared<WatchOptions>();
   options->topics = {v1::OBJECTS, v1::HIPS, v1::DEVICES};
-  CLI::App* verb = add_verb(app, command, "watch", "what happens, live; Ctrl-C ends it",
+  CLI::App& verb = add_verb(app, command, "watch", "what happens, live; Ctrl-C ends it",
                             [options](Command& chosen) { return Watch(chosen, *options).run(); });
-  const std::map<std::string, v1::Topic> topics = {{"objects", v1::OBJECTS},
-                                                   {"hips", v1::HIPS},
-                                                   {"devices", v1::DEVICES},
-                                                   {"events", v1::EVENTS},
-                                                   {"stats", v1::STATS}};
-  verb->add_option("--topic", options->topics,
-                   "objects, hips, devices, events, stats; default: the first three. Events are shown in any "
-                   "case; as a topic they have sequence numbers")
-      ->transform(CLI::CheckedTransformer(topics, CLI::ignore_case).description(""))
-      ->type_name("TOPIC")
-      ->delimiter(',');
-  verb->add_option("--finger", options->fingers, "only the HIPs of these; default: of all")
-      ->type_name("NAME")
-      ->delimiter(',');
-  verb->add_option("--object", options->objects, "only these, and contacts with them; default: all")
-      ->type_name("NAME")
-      ->delimiter(',');
-  verb->add_flag("--in-contact", options->only_in_contact, "only HIPs that are in contact");
-  const std::map<std::string, v1::Delivery> deliveries = {{"latest", v1::LATEST}, {"lossless", v1::LOSSLESS}};
-  verb->add_option("--delivery", options->delivery,
-                   "latest: newer frames replace those that wait; lossless: all wait; default: latest on a "
-                   "terminal, else lossless")
-      ->transform(CLI::CheckedTransformer(deliveries, CLI::ignore_case).description(""))
-      ->type_name("HOW");
-  verb->add_option("--rate", options->rate,
-                   "frames a second; default: 20 on a terminal, 1 in lines, every tick with --json")
-      ->check(CLI::PositiveNumber)
-      ->type_name("HZ");
-  verb->add_option("--seconds", options->seconds, "end after so long")->check(CLI::PositiveNumber);
-  verb->add_option("--count", options->count, "end after so many frames")->check(CLI::PositiveNumber);
-  verb->add_flag("--hips", options->hips, "a table of each HIP in contact, too");
+  const Words<v1::Topic> topics = {{"objects", v1::OBJECTS},
+                                   {"hips", v1::HIPS},
+                                   {"devices", v1::DEVICES},
+                                   {"events", v1::EVENTS},
+                                   {"stats", v1::STATS}};
+  add_choices(verb, "--topic", options->topics,
+              "objects, hips, devices, events, stats; default: the first three. Events are shown in any "
+              "case; as a topic they have sequence numbers",
+              topics)
+      .type("TOPIC")
+      .separated_by(',');
+  add_option(verb, "--finger", options->fingers, "only the HIPs of these; default: of all")
+      .type("NAME")
+      .separated_by(',');
+  add_option(verb, "--object", options->objects, "only these, and contacts with them; default: all")
+      .type("NAME")
+      .separated_by(',');
+  add_flag(verb, "--in-contact", options->only_in_contact, "only HIPs that are in contact");
+  const Words<v1::Delivery> deliveries = {{"latest", v1::LATEST}, {"lossless", v1::LOSSLESS}};
+  add_choice(verb, "--delivery", options->delivery,
+             "latest: newer frames replace those that wait; lossless: all wait; default: latest on a "
+             "terminal, else lossless",
+             deliveries)
+      .type("HOW");
+  add_option(verb, "--rate", options->rate,
+             "frames a second; default: 20 on a terminal, 1 in lines, every tick with --json")
+      .positive()
+      .type("HZ");
+  add_option(verb, "--seconds", options->seconds, "end after so long").positive();
+  add_option(verb, "--count", options->count, "end after so many frames").positive();
+  add_flag(verb, "--hips", options->hips, "a table of each HIP in contact, too");
 }
 
 }  // namespace haptic::cli

@@ -29,13 +29,12 @@ void add_verbs(CLI::App& app, Command& command) {
   add_completion(app, command);
 }
 
-std::unique_ptr<CLI::App> make_app(Command& command) {
-  auto app = std::make_unique<CLI::App>("Talks to hapticd, the haptics daemon", "hapticctl");
-  app->set_version_flag("--version", "hapticctl " HAPTIC_VERSION);
-  app->require_subcommand(1);
+Parser make_app(Command& command) {
+  Parser app = make_parser("hapticctl", "Talks to hapticd, the haptics daemon", "hapticctl " HAPTIC_VERSION);
   add_common_options(*app, command);
   add_verbs(*app, command);
-  app->footer(
+  set_footer(
+      *app,
       "The daemon is looked for at --socket, else --server, else HAPTICD_SERVER, else HAPTICD_SOCKET, else\n"
       "the system service's socket, else the user's own. HAPTICD_CERTIFICATE, HAPTICD_KEY and\n"
       "HAPTICD_AUTHORITY stand for the options of TLS.\n"

@@ -1,8 +1,6 @@
 #pragma once
 // One verb, one file: each adds its sub-command, which runs when it is chosen.
 
-#include <memory>
-
 #include "client/cli/command.h"
 
 namespace haptic::cli {
@@ -37,6 +35,6 @@ void add_verbs(CLI::App& app, Command& command);
 
 /// The parser with everything that hapticctl understands: what the program, a script's lines, completion and
 /// the manual pages all have in common.
-std::unique_ptr<CLI::App> make_app(Command& command);
+Parser make_app(Command& command);
 
 }  // namespace haptic::cli

@@ -5,6 +5,8 @@
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+
 #include "client/lib/error.h"
 
 namespace haptic::cli {
