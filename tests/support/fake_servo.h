@@ -110,6 +110,11 @@ class FakeServo {
         fault_ = command.fault;
         mailbox_.events.push({.kind = servo::EventKind::kFaultLatched, .tick = tick_, .fault = fault_});
         return servo::EventKind::kDone;
+      case servo::CommandKind::kEmergencyStop:
+        armed_ = false;
+        fault_ = {.kind = safety::FaultKind::kEmergencyStop, .tick = tick_};
+        mailbox_.events.push({.kind = servo::EventKind::kFaultLatched, .tick = tick_, .fault = fault_});
+        return servo::EventKind::kDone;
       case servo::CommandKind::kSwapScene:
         mailbox_.events.push(
             {.kind = servo::EventKind::kSceneRetired, .command = command.kind, .scene = scene_.release()});
