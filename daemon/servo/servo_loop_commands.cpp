@@ -93,7 +93,7 @@ EventKind ServoLoop::arm(WaitingForce& waiting) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const double force = safety::length(channels_[i].wanted.force);
     const double limit = channels_[i].guard.limits().max_arm_force;
-    if (force <= limit) continue;
+    if (force <= limit || !channels_[i].device->info().exerts_force) continue;
     waiting = {.device = static_cast<std::uint32_t>(i), .force = force, .limit = limit};
     return EventKind::kForceWaits;
   }
