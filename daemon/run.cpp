@@ -103,13 +103,15 @@ class StopWaiter {
   std::thread thread_;
 };
 
-std::vector<v1::DeviceDescription> describe_devices(const setup::DeviceSet& devices, double max_force) {
+std::vector<v1::DeviceDescription> describe_devices(const setup::DeviceSet& devices,
+                                                    const servo::ServoSettings& settings) {
   std::vector<v1::DeviceDescription> descriptions;
   for (const drivers::Device* const device : devices.devices()) {
     v1::DeviceDescription& told = descriptions.emplace_back();
     told.set_name(device->info().name);
     told.set_driver(device->info().driver);
-    told.set_max_force(std::min(device->info().max_force, max_force));
+    const double own = settings.devices[descriptions.size() - 1].limits.max_force;
+    told.set_max_force(std::min({device->info().max_force, settings.limits.max_force, own}));
   }
   return descriptions;
 }
@@ -191,7 +193,7 @@ void run(const RunOptions& options) {
                      {.mailbox = *mailbox,
                       .version = HAPTIC_VERSION,
                       .rate_hz = settings.rate_hz,
-                      .devices = describe_devices(devices, settings.limits.max_force),
+                      .devices = describe_devices(devices, settings),
                       .real_time = describe_rights(servo_thread.report()),
                       .scene = std::move(scene.description),
                       .running = std::move(running),

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 
 namespace haptic::drivers {
@@ -39,6 +40,13 @@ struct DeviceInfo {
   std::string name;    // from the config
   std::string driver;  // e.g. "simulated"
   double max_force;    // N that it can bear; infinity if it sets no limit
+
+  // beside that it may set limits of its own, infinite by default
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  double max_mean_force = kNone;  // N that it can bear for ever
+  glm::dvec3 travel_min{-kNone};  // m, its own frame: the box within which it may be given force
+  glm::dvec3 travel_max{kNone};
+  bool exerts_force = true;  // false: it has no motors, and what write() is told moves nothing
 };
 
 class Device {

@@ -13,7 +13,12 @@ const char* unit_of(v1::FaultKind kind) {
       return " m/s";
     case v1::FAULT_STALE_SAMPLE:
     case v1::FAULT_LOST_DRIVER:
+    case v1::FAULT_STILL_SAMPLE:
       return " s";
+    case v1::FAULT_OVER_TRAVEL:
+      return " m";
+    case v1::FAULT_ENERGY:
+      return " J";
     case v1::FAULT_MISSED_TICKS:
       return " ticks";
     default:
@@ -37,6 +42,14 @@ std::string describe(v1::FaultKind kind) {
       return "missed ticks";
     case v1::FAULT_LOST_DRIVER:
       return "lost driver";
+    case v1::FAULT_OVER_TRAVEL:
+      return "over travel";
+    case v1::FAULT_ENERGY:
+      return "energy";
+    case v1::FAULT_EMERGENCY_STOP:
+      return "emergency stop";
+    case v1::FAULT_STILL_SAMPLE:
+      return "still sample";
     default:
       return fmt::format("fault {}", static_cast<int>(kind));
   }
@@ -45,7 +58,7 @@ std::string describe(v1::FaultKind kind) {
 std::string describe(const v1::Fault& fault) {
   std::string text = fault.device().empty() ? "" : fault.device() + ": ";
   text += describe(fault.kind());
-  if (fault.limit() > 0.0) {
+  if (fault.limit() > 0.0 || fault.kind() == v1::FAULT_OVER_TRAVEL) {
     const char* unit = unit_of(fault.kind());
     text += fmt::format(", {:.3g}{} where {:.3g}{} is allowed", fault.value(), unit, fault.limit(), unit);
   }

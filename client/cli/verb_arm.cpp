@@ -26,11 +26,18 @@ ExitCode disarm(Command& command) {
                 "disarmed: no device pushes");
 }
 
+ExitCode stop_emergency(Command& command) {
+  client::Connection& daemon = command.connect();
+  return report(command, call(daemon, [](v1::Request& request) { request.mutable_emergency_stop(); }),
+                "stopped: no device pushes, until somebody clears the fault");
+}
+
 }  // namespace
 
 void add_arm(CLI::App& app, Command& command) {
   add_verb(app, command, "arm", "allow force", arm);
   add_verb(app, command, "disarm", "forbid force", disarm);
+  add_verb(app, command, "estop", "emergency stop: end all force at once, and latch a fault", stop_emergency);
 }
 
 }  // namespace haptic::cli

@@ -3,8 +3,15 @@
 #include <array>
 #include <cstdio>
 
+#include "safety/limits.h"
+
 namespace haptic::ipc {
 namespace {
+
+static_assert(safety::kLimitForce == 1U << v1::LIMIT_FORCE && safety::kLimitRate == 1U << v1::LIMIT_RATE &&
+              safety::kLimitRamp == 1U << v1::LIMIT_RAMP &&
+              safety::kLimitMeanForce == 1U << v1::LIMIT_MEAN_FORCE &&
+              safety::kLimitClutch == 1U << v1::LIMIT_CLUTCH);
 
 constexpr std::array<const char*, servo::kStages> kStageNames = {"commands", "read",    "step", "guard",
                                                                  "write",    "publish", "tick"};
@@ -21,6 +28,14 @@ const char* words_of(v1::FaultKind kind) noexcept {
       return "missed ticks";
     case v1::FAULT_LOST_DRIVER:
       return "lost driver";
+    case v1::FAULT_OVER_TRAVEL:
+      return "over travel";
+    case v1::FAULT_ENERGY:
+      return "too much energy given to the user";
+    case v1::FAULT_EMERGENCY_STOP:
+      return "emergency stop";
+    case v1::FAULT_STILL_SAMPLE:
+      return "the same position all the time";
     default:
       return "fault";
   }
@@ -32,7 +47,12 @@ const char* unit_of(v1::FaultKind kind) noexcept {
       return " m/s";
     case v1::FAULT_STALE_SAMPLE:
     case v1::FAULT_LOST_DRIVER:
+    case v1::FAULT_STILL_SAMPLE:
       return " s";
+    case v1::FAULT_OVER_TRAVEL:
+      return " m";
+    case v1::FAULT_ENERGY:
+      return " J";
     default:
       return "";
   }
@@ -68,6 +88,14 @@ v1::FaultKind to_wire(safety::FaultKind kind) noexcept {
       return v1::FAULT_STALE_SAMPLE;
     case safety::FaultKind::kMissedTicks:
       return v1::FAULT_MISSED_TICKS;
+    case safety::FaultKind::kOverTravel:
+      return v1::FAULT_OVER_TRAVEL;
+    case safety::FaultKind::kEnergy:
+      return v1::FAULT_ENERGY;
+    case safety::FaultKind::kEmergencyStop:
+      return v1::FAULT_EMERGENCY_STOP;
+    case safety::FaultKind::kStillSample:
+      return v1::FAULT_STILL_SAMPLE;
     case safety::FaultKind::kLostDriver:
       break;
   }
@@ -89,7 +117,8 @@ v1::Fault to_wire(const safety::Fault& fault, std::span<const v1::DeviceDescript
 std::string in_words(const v1::Fault& fault) {
   std::string text = fault.device().empty() ? "" : fault.device() + ": ";
   text += words_of(fault.kind());
-  if (fault.limit() > 0.0) {
+  // a side of a box may be at any coordinate
+  if (fault.limit() > 0.0 || fault.kind() == v1::FAULT_OVER_TRAVEL) {
     std::array<char, 96> numbers{};
     const char* unit = unit_of(fault.kind());
     std::snprintf(numbers.data(), numbers.size(), ", %.3g%s where %.3g%s is allowed", fault.value(), unit,

@@ -31,6 +31,7 @@ constexpr std::array kRows = {
     Row{v1::Request::kResume, v1::SCRIPT, handle_servo_command},
     Row{v1::Request::kStep, v1::SCRIPT, handle_servo_command},
     Row{v1::Request::kDisarm, v1::SCRIPT, handle_servo_command},
+    Row{v1::Request::kEmergencyStop, v1::SCRIPT, handle_emergency_stop},
     Row{v1::Request::kArm, v1::DRIVE, handle_arm},
     Row{v1::Request::kAcquireDrive, v1::DRIVE, handle_acquire_drive},
     Row{v1::Request::kReleaseDrive, v1::DRIVE, handle_release_drive},

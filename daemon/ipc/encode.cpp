@@ -107,6 +107,9 @@ void fill_devices(const servo::Snapshot& snapshot, v1::DevicesFrame& out) {
     out.add_buttons(device.buttons);
     out.add_present(device.present);
     out.add_fault(to_wire(device.fault.kind));
+    add(*out.mutable_acceleration(), device.acceleration);
+    out.add_limits(device.limits);
+    out.add_energy(device.energy);
   }
 }
 

@@ -26,6 +26,15 @@ void describe(const servo::DeviceSnapshot& device, const Services& services, v1:
   set(*out.mutable_wrench()->mutable_force(), device.force);
   set(*out.mutable_wrench()->mutable_torque(), device.torque);
   out.set_sample_age(device.sample_age);
+  set(*out.mutable_acceleration(), device.acceleration);
+  for (int kind = v1::LIMIT_NONE + 1; kind <= v1::LimitKind_MAX; ++kind) {
+    if ((device.limits & (1U << static_cast<unsigned>(kind))) != 0) {
+      out.add_limit(static_cast<v1::LimitKind>(kind));
+    }
+  }
+  out.set_mean_force(device.mean_force);
+  out.set_energy(device.energy);
+  out.set_clutched(device.clutched);
   if (device.fault.kind != safety::FaultKind::kNone) {
     *out.mutable_fault() = to_wire(device.fault, services.devices);
   }

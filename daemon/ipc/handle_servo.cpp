@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdio>
 
 #include "ipc/convert.h"
 #include "ipc/handlers.h"
@@ -71,13 +73,22 @@ std::string name_fault(const Desk& desk) {
   return "";
 }
 
+std::string in_words(const servo::WaitingForce& waiting, const std::vector<v1::DeviceDescription>& devices) {
+  std::array<char, 160> numbers{};
+  std::snprintf(numbers.data(), numbers.size(),
+                "%.3g N wait to push on it, where at most %.3g N may when it is armed (safety.max_arm_force)",
+                waiting.force, waiting.limit);
+  const std::string device = waiting.device < devices.size() ? devices[waiting.device].name() : "a device";
+  return device + ": " + numbers.data() + "; take it out of what it touches, then arm again";
+}
+
 }  // namespace
 
 void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Request& request,
                           const Reply& reply) {
   const v1::Request::CallCase call = request.call_case();
   const servo::Command command = command_of(request);
-  const auto on_answer = [&desk, call, reply](Outcome outcome) {
+  const auto on_answer = [&desk, call, reply](Outcome outcome, const servo::Event* answer) {
     switch (outcome) {
       case Outcome::kDone:
         reply.done();
@@ -89,6 +100,9 @@ void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Reques
         reply.fail(v1::Error::FAULT_LATCHED,
                    "a fault is latched" + name_fault(desk) + "; find its cause, then clear it");
         break;
+      case Outcome::kForceWaits:
+        reply.fail(v1::Error::FAILED, "not armed: " + in_words(answer->waiting, desk.services.devices));
+        break;
       case Outcome::kOutdated:  // of edits only
       case Outcome::kNoAnswer:
         reply.fail(v1::Error::FAILED, "the servo thread does not answer");
@@ -96,9 +110,28 @@ void handle_servo_command(Desk& desk, const Caller& /*caller*/, const v1::Reques
     }
   };
   const bool sent =
-      desk.servo.submit(command, SteadyClock::now(), on_answer, time_of(command, desk.services.rate_hz));
+      desk.servo.ask(command, SteadyClock::now(), on_answer, time_of(command, desk.services.rate_hz));
   if (!sent) {
     reply.fail(v1::Error::BUSY, "the servo thread has too many commands waiting; try again");
+  }
+}
+
+void handle_emergency_stop(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
+                           const Reply& reply) {
+  // not in the queue of commands, where others may be before it
+  desk.services.mailbox.emergency_stop.store(true, std::memory_order_release);
+  servo::Command command;
+  command.kind = servo::CommandKind::kEmergencyStop;
+  const bool sent = desk.servo.submit(command, SteadyClock::now(), [reply](Outcome outcome) {
+    if (outcome == Outcome::kNoAnswer) {
+      reply.fail(v1::Error::FAILED, "the servo thread does not answer; forces expire by themselves");
+    } else {
+      reply.done();
+    }
+  });
+  // the next tick sees it, whether or not there was room to ask for an answer
+  if (!sent) {
+    reply.done();
   }
 }
 

@@ -20,6 +20,7 @@ void handle_edit_scene(Desk& desk, const Caller& caller, const v1::Request& requ
 void handle_get_state(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_servo.cpp: what the servo thread does itself
 void handle_servo_command(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+void handle_emergency_stop(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 void handle_arm(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_drive.cpp
 void handle_acquire_drive(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);

@@ -12,6 +12,8 @@ Outcome outcome_of(servo::EventKind kind) noexcept {
       return Outcome::kNothingToDo;
     case servo::EventKind::kFaultRefused:
       return Outcome::kFaultRefused;
+    case servo::EventKind::kForceWaits:
+      return Outcome::kForceWaits;
     case servo::EventKind::kOutdated:
       return Outcome::kOutdated;
     default:
@@ -21,7 +23,8 @@ Outcome outcome_of(servo::EventKind kind) noexcept {
 
 bool is_answer(servo::EventKind kind) noexcept {
   return kind == servo::EventKind::kDone || kind == servo::EventKind::kNothingToDo ||
-         kind == servo::EventKind::kFaultRefused || kind == servo::EventKind::kOutdated;
+         kind == servo::EventKind::kFaultRefused || kind == servo::EventKind::kForceWaits ||
+         kind == servo::EventKind::kOutdated;
 }
 
 }  // namespace
@@ -37,18 +40,24 @@ bool ServoLink::submit(servo::Command command, SteadyClock::time_point now, OnAn
               });
 }
 
-bool ServoLink::submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time_point now, OnCopy on_copy) {
+bool ServoLink::ask(servo::Command command, SteadyClock::time_point now, OnAnswerEvent on_answer,
+                    std::chrono::milliseconds takes) {
+  return send(command, now + patience_ + takes, std::move(on_answer));
+}
+
+bool ServoLink::submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time_point now,
+                       OnAnswerEvent on_answer) {
   servo::Command command;
   command.kind = servo::CommandKind::kCopyState;
   command.copy = copy.get();
-  if (!send(command, now + patience_, std::move(on_copy))) {
+  if (!send(command, now + patience_, std::move(on_answer))) {
     return false;
   }
   static_cast<void>(copy.release());  // the command holds it
   return true;
 }
 
-bool ServoLink::send(servo::Command command, SteadyClock::time_point deadline, OnCopy on_answer) {
+bool ServoLink::send(servo::Command command, SteadyClock::time_point deadline, OnAnswerEvent on_answer) {
   command.request = last_request_ + 1;
   // first what may fail: a command that the servo thread has can not be taken back
   const auto entry = pending_.emplace(command.request, Pending{deadline, std::move(on_answer)}).first;
@@ -70,7 +79,7 @@ void ServoLink::poll(SteadyClock::time_point now) {
       ++entry;
       continue;
     }
-    const OnCopy on_answer = std::move(entry->second.on_answer);
+    const OnAnswerEvent on_answer = std::move(entry->second.on_answer);
     entry = pending_.erase(entry);
     on_answer(Outcome::kNoAnswer, nullptr);
   }
@@ -88,7 +97,7 @@ void ServoLink::take(const servo::Event& event) {
   }
   const auto found = pending_.find(event.request);
   if (found != pending_.end()) {
-    const OnCopy on_answer = std::move(found->second.on_answer);
+    const OnAnswerEvent on_answer = std::move(found->second.on_answer);
     pending_.erase(found);
     on_answer(outcome_of(event.kind), &event);
   }

@@ -14,13 +14,13 @@ namespace haptic::ipc {
 
 using SteadyClock = std::chrono::steady_clock;
 
-enum class Outcome { kDone, kNothingToDo, kFaultRefused, kOutdated, kNoAnswer };
+enum class Outcome { kDone, kNothingToDo, kFaultRefused, kForceWaits, kOutdated, kNoAnswer };
 
 class ServoLink {
  public:
   using OnAnswer = std::function<void(Outcome)>;
   /// `answer` is nullptr if there was none.
-  using OnCopy = std::function<void(Outcome, const servo::Event* answer)>;
+  using OnAnswerEvent = std::function<void(Outcome, const servo::Event* answer)>;
   using OnEvent = std::function<void(const servo::Event&)>;
 
   /// `on_event` sees every event but kSceneRetired, answers too, and before the one who asked does.
@@ -32,9 +32,13 @@ class ServoLink {
   bool submit(servo::Command command, SteadyClock::time_point now, OnAnswer on_answer,
               std::chrono::milliseconds takes = std::chrono::milliseconds(0));
 
+  /// As submit(), for one who wants to know more of the answer than its outcome.
+  bool ask(servo::Command command, SteadyClock::time_point now, OnAnswerEvent on_answer,
+           std::chrono::milliseconds takes = std::chrono::milliseconds(0));
+
   /// Sends kCopyState with `copy` as its buffer, as submit() does. The answer's buffer is the one who asked's
-  /// to read until `on_copy` returns.
-  bool submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time_point now, OnCopy on_copy);
+  /// to read until `on_answer` returns.
+  bool submit(std::unique_ptr<servo::StateCopy> copy, SteadyClock::time_point now, OnAnswerEvent on_answer);
 
   /// Takes what the servo thread has sent. To be called every few milliseconds.
   void poll(SteadyClock::time_point now);
@@ -42,10 +46,10 @@ class ServoLink {
  private:
   struct Pending {
     SteadyClock::time_point deadline;
-    OnCopy on_answer;
+    OnAnswerEvent on_answer;
   };
 
-  bool send(servo::Command command, SteadyClock::time_point deadline, OnCopy on_answer);
+  bool send(servo::Command command, SteadyClock::time_point deadline, OnAnswerEvent on_answer);
 
   void take(const servo::Event& event);
 

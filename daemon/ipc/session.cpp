@@ -202,6 +202,7 @@ void Session::take_request(const v1::Request& request) {
 // if not, the request is answered, or the client cut off
 bool Session::is_within_limits(const v1::Request& request, const Reply& reply) {
   // nobody is ever too busy to end all force
+  if (request.has_emergency_stop()) return true;
   const auto verdict = request.has_disarm() ? RequestRate::Verdict::kTaken : rate_.take(SteadyClock::now());
   const std::string rate = std::to_string(limits_.requests_per_second) + " requests in a second";
   if (verdict == RequestRate::Verdict::kFlood) {

@@ -12,6 +12,7 @@
 #include "load/path_file.h"
 #include "load/ranges.h"
 #include "load/read_file.h"
+#include "load/safety_config.h"
 #include "load/scene_parts.h"
 
 namespace haptic::load {
@@ -30,7 +31,7 @@ class ConfigCheck {
   void check(LoadedConfig& loaded) {
     servo(*config_.mutable_servo());
     capacity(*config_.mutable_capacity());
-    safety(*config_.mutable_safety());
+    check_safety(source_, *config_.mutable_safety());
     listeners();
     limits(*config_.mutable_limits());
     drive(*config_.mutable_drive());
@@ -64,21 +65,6 @@ class ConfigCheck {
           [&](std::uint32_t v) { capacity.set_fingers(v); });
     count("capacity.hips", capacity.hips(), 16384, {1, 262144},
           [&](std::uint32_t v) { capacity.set_hips(v); });
-  }
-
-  void safety(v1::Safety& safety) const {
-    number("safety.max_force", safety.max_force(), 5.0, {0.0, 1000.0, " N", true},
-           [&](double v) { safety.set_max_force(v); });
-    number("safety.max_force_rate", safety.max_force_rate(), 500.0, {0.0, 1e6, " N/s", true},
-           [&](double v) { safety.set_max_force_rate(v); });
-    number("safety.max_speed", safety.max_speed(), 2.0, {0.0, 100.0, " m/s", true},
-           [&](double v) { safety.set_max_speed(v); });
-    number("safety.arm_ramp", safety.arm_ramp(), 0.5, {0.0, 60.0, " s", true},
-           [&](double v) { safety.set_arm_ramp(v); });
-    number("safety.max_sample_age", safety.max_sample_age(), 0.02, {0.0, 10.0, " s", true},
-           [&](double v) { safety.set_max_sample_age(v); });
-    count("safety.max_missed_ticks", safety.max_missed_ticks(), 50, {1, 1000000},
-          [&](std::uint32_t v) { safety.set_max_missed_ticks(v); });
   }
 
   void limits(v1::Limits& limits) const {
@@ -128,6 +114,7 @@ class ConfigCheck {
         source_.fail(field + ".name",
                      in_quotes(device.name()) + " is also the name of " + item("device", same->second));
       }
+      check_device_safety(source_, field, device);
       loaded.paths.push_back(path_of(field, device));
       loaded.firmware.push_back(check_hardware(source_, field, file_, device));
     }

@@ -8,17 +8,22 @@ namespace haptic::safety {
 
 enum class FaultKind : std::uint8_t {
   kNone,
-  kNotFinite,    // a force or a pose that is no number; value and limit are 0
-  kOverSpeed,    // value and limit in m/s
-  kStaleSample,  // value and limit in s
-  kMissedTicks,  // value and limit in ticks
-  kLostDriver,   // value and limit in s of silence; 0: the connection ended
+  kNotFinite,      // a force or a pose that is no number; value and limit are 0
+  kOverSpeed,      // value and limit in m/s
+  kStaleSample,    // value and limit in s
+  kMissedTicks,    // value and limit in ticks
+  kLostDriver,     // value and limit in s of silence; 0: the connection ended
+  kOverTravel,     // value: the coordinate in the device's own frame, limit: the side of the box, in m
+  kEnergy,         // value and limit in J
+  kEmergencyStop,  // value and limit are 0
+  kStillSample,    // value and limit in s
 };
 
 /// In lower case, e.g. "over_speed"; "none" for no fault.
 constexpr const char* name_of(FaultKind kind) noexcept {
-  constexpr const char* kNames[] = {"none",         "not_finite",   "over_speed",
-                                    "stale_sample", "missed_ticks", "lost_driver"};
+  constexpr const char* kNames[] = {"none",           "not_finite",  "over_speed",  "stale_sample",
+                                    "missed_ticks",   "lost_driver", "over_travel", "energy",
+                                    "emergency_stop", "still_sample"};
   return kNames[static_cast<int>(kind)];
 }
 

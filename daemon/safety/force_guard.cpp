@@ -2,47 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "safety/magnitude.h"
 
 namespace haptic::safety {
 
-namespace {
-
-bool is_finite(const glm::dvec3& v) noexcept {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool is_finite(const glm::dquat& q) noexcept {
-  return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
-}
-
-double largest_component(const glm::dvec3& v) noexcept {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
-/// Length without overflow on the way; infinite only if the length itself is beyond a double.
-double length(const glm::dvec3& v) noexcept {
-  const double largest = largest_component(v);
-  if (largest == 0.0) return 0.0;
-  const glm::dvec3 scaled = v / largest;
-  return largest * std::sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
-}
-
-/// `v` brought down to `limit` in its own direction if it is longer; `scale` is what it was multiplied by.
-glm::dvec3 clamp_length(const glm::dvec3& v, double limit, double& scale) noexcept {
-  scale = 1.0;
-  if (length(v) <= limit) return v;
-  const double largest = largest_component(v);
-  const glm::dvec3 scaled = v / largest;
-  const double unit = limit / length(scaled);
-  scale = unit / largest;
-  return scaled * unit;
-}
-
-}  // namespace
+ForceGuard::ForceGuard(const GuardLimits& limits) noexcept
+    : limits_(limits),
+      mean_force_(limits.max_mean_force, limits.mean_force_time),
+      energy_(limits.max_energy) {}
 
 bool ForceGuard::arm() noexcept {
   if (fault_.kind != FaultKind::kNone) return false;
-  if (!armed_) ramp_ = 0.0;
+  if (!armed_) {
+    ramp_ = 0.0;
+    energy_.reset();
+  }
   armed_ = true;
   return true;
 }
@@ -74,50 +50,88 @@ void ForceGuard::latch_measured(FaultKind kind, const GuardInput& input, double 
   latch({.kind = kind, .device = input.device, .tick = input.tick, .value = value, .limit = limit});
 }
 
-bool ForceGuard::find_fault(const GuardInput& input) noexcept {
-  const bool finite = is_finite(input.position) && is_finite(input.orientation) &&
+// what the force of the tick before has done
+void ForceGuard::observe(const GuardInput& input, double dt) noexcept {
+  const glm::dvec3 given = input.force_share * last_force_;
+  const bool counts = armed_ && input.present && is_finite(input.position);
+  mean_force_.take(length(given), dt);
+  still_.take(input.tick, counts && given != glm::dvec3(0.0), input.position);
+  if (counts) {
+    energy_.take(given, dt, input.sample_time, input.position);
+  } else {
+    energy_.lose_place();
+  }
+}
+
+bool ForceGuard::find_fault(const GuardInput& input, double dt) noexcept {
+  const bool finite = is_finite(input.position) && is_finite(input.place) && is_finite(input.orientation) &&
                       is_finite(input.velocity) && is_finite(input.force) && is_finite(input.torque) &&
                       !std::isnan(input.sample_age);
   if (!finite) {
     latch_measured(FaultKind::kNotFinite, input, 0.0, 0.0);
-  } else if (armed_ && input.present && length(input.velocity) > limits_.max_speed) {
-    latch_measured(FaultKind::kOverSpeed, input, length(input.velocity), limits_.max_speed);
-  } else if (armed_ && input.present && input.sample_age > limits_.max_sample_age) {
-    latch_measured(FaultKind::kStaleSample, input, input.sample_age, limits_.max_sample_age);
+  } else if (armed_ && input.present) {
+    find_fault_of_motion(input, dt);
   }
   return cut_;
 }
 
-GuardOutput ForceGuard::guard(const GuardInput& input, double dt) noexcept {
-  if (find_fault(input) || !input.present) {
-    ramp_ = 0.0;
-    last_force_ = last_torque_ = glm::dvec3(0.0);
-    return {};
+void ForceGuard::find_fault_of_motion(const GuardInput& input, double dt) noexcept {
+  const double still = static_cast<double>(still_.ticks()) * dt;
+  if (length(input.velocity) > limits_.max_speed) {
+    latch_measured(FaultKind::kOverSpeed, input, length(input.velocity), limits_.max_speed);
+  } else if (input.sample_age > limits_.max_sample_age) {
+    latch_measured(FaultKind::kStaleSample, input, input.sample_age, limits_.max_sample_age);
+  } else if (const std::optional<OverTravel> beyond = over_travel(limits_.travel, input.place)) {
+    latch_measured(FaultKind::kOverTravel, input, beyond->coordinate, beyond->side);
+  } else if (energy_.is_beyond()) {
+    latch_measured(FaultKind::kEnergy, input, energy_.energy(), limits_.max_energy);
+  } else if (still > limits_.max_still) {
+    latch_measured(FaultKind::kStillSample, input, still, limits_.max_still);
   }
-  GuardOutput output;
+}
 
-  // ramp after arming, or no force at all
-  double ramp = 0.0;
-  if (armed_) {
-    ramp_ = limits_.arm_ramp > 0.0 ? std::min(1.0, ramp_ + dt / limits_.arm_ramp) : 1.0;
-    ramp = ramp_;
-    if (ramp < 1.0) output.limits |= kLimitRamp;
+GuardOutput ForceGuard::guard(const GuardInput& input, double dt) noexcept {
+  observe(input, dt);
+  GuardOutput output;
+  if (find_fault(input, dt) || !input.present) {
+    ramp_ = 0.0;
+  } else {
+    output = let_through(input, dt);
   }
+  last_force_ = output.force;
+  last_torque_ = output.torque;
+  return output;
+}
+
+// the share of the force: none unless armed, and all of it a while after that
+double ForceGuard::ramp(const GuardInput& input, double dt, std::uint32_t& limits) noexcept {
+  if (input.clutched) {
+    ramp_ = 0.0;
+    limits |= kLimitClutch;
+    return 0.0;
+  }
+  if (!armed_) return 0.0;
+  ramp_ = limits_.arm_ramp > 0.0 ? std::min(1.0, ramp_ + dt / limits_.arm_ramp) : 1.0;
+  if (ramp_ < 1.0) limits |= kLimitRamp;
+  return ramp_;
+}
+
+GuardOutput ForceGuard::let_through(const GuardInput& input, double dt) noexcept {
+  GuardOutput output;
+  const double share = ramp(input, dt, output.limits);
 
   // magnitude
+  const double bound = mean_force_.bound(limits_.max_force);
   double scale = 1.0;
-  const glm::dvec3 wanted = clamp_length(ramp * input.force, limits_.max_force, scale);
-  if (scale < 1.0) output.limits |= kLimitForce;
-  const glm::dvec3 wanted_torque = ramp * scale * input.torque;
+  const glm::dvec3 wanted = clamp_length(share * input.force, bound, scale);
+  if (scale < 1.0) output.limits |= bound < limits_.max_force ? kLimitMeanForce : kLimitForce;
+  const glm::dvec3 wanted_torque = share * scale * input.torque;
 
   // slew: of two forces within the limit every force between them is too
   const glm::dvec3 change = clamp_length(wanted - last_force_, limits_.max_force_rate * dt, scale);
   if (scale < 1.0) output.limits |= kLimitRate;
   output.force = scale < 1.0 ? last_force_ + change : wanted;
   output.torque = last_torque_ + scale * (wanted_torque - last_torque_);
-
-  last_force_ = output.force;
-  last_torque_ = output.torque;
   return output;
 }
 

@@ -60,8 +60,9 @@ enum class CommandKind : std::uint8_t {
   kClearFault,
   kSwapScene,  // `scene` becomes the one that runs; the one that does not comes back in kSceneRetired
   kResetStats,
-  kLatchFault,  // `fault`, while armed: forces go down by the slew limit, and it is latched
-  kCopyState,   // into `copy`, at the end of the tick; kOutdated if that is for another scene
+  kLatchFault,     // `fault`, while armed: forces go down by the slew limit, and it is latched
+  kCopyState,      // into `copy`, at the end of the tick; kOutdated if that is for another scene
+  kEmergencyStop,  // see Mailbox::emergency_stop; the command is for the answer
 };
 
 struct Command {
@@ -78,9 +79,17 @@ enum class EventKind : std::uint8_t {
   kNothingToDo,   // answer: it was so already
   kFaultRefused,  // answer: a fault is latched
   kOutdated,      // answer: another scene runs than the one that was edited
+  kForceWaits,    // answer to kArm: `waiting` would push at once
   kFaultLatched,  // `fault`
   kTicksMissed,   // `count` periods were slept through
   kSceneRetired,  // `scene` is no longer used and is the receiver's to free
+};
+
+/// What keeps devices from being armed.
+struct WaitingForce {
+  std::uint32_t device = 0;
+  double force = 0.0;  // N that the world would have on the hand
+  double limit = 0.0;  // N that may wait
 };
 
 struct Event {
@@ -90,6 +99,7 @@ struct Event {
   std::uint64_t tick = 0;
   std::uint64_t count = 0;
   safety::Fault fault{};  // the latched one, if any
+  WaitingForce waiting{};
   PreparedScene* scene = nullptr;
   StateCopy* copy = nullptr;  // of the answer to kCopyState: the receiver's to free
 };
@@ -147,6 +157,10 @@ struct DeviceSnapshot {
   std::uint32_t buttons;
   std::uint32_t limits;  // safety::Limit bits
   safety::Fault fault;
+  glm::dvec3 acceleration{0.0};  // m/s^2, world
+  double mean_force = 0.0;       // N, running
+  double energy = 0.0;           // J given to the user beyond what was taken, since it was armed
+  bool clutched = false;         // its clutch is down
 };
 
 /// One tick as the rest of the daemon sees it. The vectors have their capacity from the start and only change
@@ -234,6 +248,9 @@ struct Mailbox {
   boost::lockfree::spsc_queue<Event, boost::lockfree::capacity<1024>> events;
   SnapshotRing snapshots;
   rt::TripleBuffer<LoopStats> stats;
+  /// io thread: true cuts all forces in the next tick, which takes it back, and latches the fault. However
+  /// many commands wait.
+  std::atomic<bool> emergency_stop{false};
 };
 
 }  // namespace haptic::servo

@@ -43,10 +43,9 @@ ServoLoop::ServoLoop(const ServoSettings& settings, std::span<drivers::Device* c
       mailbox_(mailbox),
       paused_(settings.paused_from_start),
       steps_left_(settings.steps_from_start) {
-  for (drivers::Device* const device : devices) {
-    safety::GuardLimits limits = settings.limits;
-    limits.max_force = std::min(limits.max_force, device->info().max_force);
-    channels_.push_back({.device = device, .guard = safety::ForceGuard(limits)});
+  channels_.reserve(devices.size());
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    channels_.push_back(make_channel(settings, *devices[i], i));
   }
   if (!settings.armed_from_start) return;
   armed_ = true;
@@ -55,9 +54,24 @@ ServoLoop::ServoLoop(const ServoSettings& settings, std::span<drivers::Device* c
 
 ServoLoop::~ServoLoop() = default;
 
+ServoLoop::Channel ServoLoop::make_channel(const ServoSettings& settings, drivers::Device& device,
+                                           std::size_t index) {
+  const DeviceSettings own = index < settings.devices.size() ? settings.devices[index] : DeviceSettings();
+  const drivers::DeviceInfo& info = device.info();
+  const safety::DeviceLimits bears{.max_force = info.max_force,
+                                   .max_mean_force = info.max_mean_force,
+                                   .travel = {info.travel_min, info.travel_max}};
+  return {.device = &device,
+          .guard = safety::ForceGuard(strictest(strictest(settings.limits, own.limits), bears)),
+          .workspace = Workspace(own.workspace),
+          .filter = MotionFilter(own.filter, settings.rate_hz),
+          .stop_button = own.stop_button};
+}
+
 void ServoLoop::tick(const Instant& now) noexcept {
   if (settings_.clock != nullptr) stage_started_ns_ = tick_started_ns_ = settings_.clock();
   count_misses(now);
+  if (mailbox_.emergency_stop.exchange(false, std::memory_order_acq_rel)) stop_emergency(now);
   receive_commands(now);
   finish_stage(Stage::kCommands);
   read_devices(now);
@@ -106,14 +120,25 @@ void ServoLoop::count_misses(const Instant& now) noexcept {
 
 void ServoLoop::read_devices(const Instant& now) noexcept {
   for (Channel& channel : channels_) {
-    if (channel.device->read(now.time, channel.sample)) channel.sampled = true;
+    if (channel.device->read(now.time, channel.hand)) measure(channel, now);
     channel.was_fresh = channel.fresh;
     // a sample may have been measured after the period began
-    const drivers::Nanoseconds age = now.time - channel.sample.time;
+    const drivers::Nanoseconds age = now.time - channel.hand.time;
     channel.sample_age =
         channel.sampled ? static_cast<double>(std::max<drivers::Nanoseconds>(0, age)) * 1e-9 : 0.0;
     channel.fresh = channel.sampled && channel.sample_age <= settings_.limits.max_sample_age;
   }
+}
+
+void ServoLoop::measure(Channel& channel, const Instant& now) noexcept {
+  channel.sampled = true;
+  const Motion& motion = channel.filter.take(channel.hand);
+  channel.hand.velocity = motion.velocity;
+  // one that is no number reaches the guard, and nothing else
+  channel.sample = is_finite(channel.hand) ? channel.workspace.to_world(channel.hand) : channel.hand;
+  channel.acceleration = channel.workspace.to_world(motion.acceleration);
+  const bool stop = channel.stop_button && ((channel.hand.buttons >> *channel.stop_button) & 1U) != 0;
+  if (stop) stop_emergency(now);
 }
 
 void ServoLoop::place_fingers() noexcept {
@@ -136,7 +161,6 @@ void ServoLoop::step_world() noexcept {
 
 void ServoLoop::want_forces() noexcept {
   for (Channel& channel : channels_) channel.wanted = {};
-  if (paused_) return;
   const std::vector<engine::Wrench>& wrenches = scene_->world.state().finger_wrenches;
   for (std::size_t f = 0; f < wrenches.size(); ++f) {
     const std::uint32_t device = scene_->device_of_finger[f];
@@ -144,10 +168,14 @@ void ServoLoop::want_forces() noexcept {
     channels_[device].wanted.force += wrenches[f].force;
     channels_[device].wanted.torque += wrenches[f].torque;
   }
+  for (Channel& channel : channels_) channel.wanted = channel.workspace.to_hand(channel.wanted);
 }
 
 void ServoLoop::guard_forces(const Instant& now) noexcept {
   want_forces();
+  // a device drops a force that has expired, however late this tick is
+  const double passed = dt_ * static_cast<double>(now.missed + 1);
+  const double alive = std::min(1.0, static_cast<double>(force_lifetime_) * 1e-9 / passed);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     const safety::GuardInput input{
@@ -156,11 +184,15 @@ void ServoLoop::guard_forces(const Instant& now) noexcept {
         // in the tick in which a sample becomes too old the guard still sees it, and may find a fault
         .present = channel.fresh || channel.was_fresh,
         .sample_age = channel.sample_age,
-        .position = channel.sample.position,
-        .orientation = channel.sample.orientation,
-        .velocity = channel.sample.velocity,
-        .force = channel.wanted.force,
-        .torque = channel.wanted.torque};
+        .sample_time = channel.hand.time,
+        .position = channel.hand.position,
+        .place = channel.workspace.to_base(channel.hand.position),
+        .orientation = channel.hand.orientation,
+        .velocity = channel.hand.velocity,
+        .force = paused_ ? glm::dvec3(0.0) : channel.wanted.force,
+        .torque = paused_ ? glm::dvec3(0.0) : channel.wanted.torque,
+        .clutched = channel.workspace.is_clutched(),
+        .force_share = channel.device->info().exerts_force ? alive : 0.0};
     channel.let_through = channel.guard.guard(input, dt_);
     if (channel.guard.is_cut()) latch(channel.guard.fault(), now);
   }
@@ -186,6 +218,10 @@ void ServoLoop::latch(const safety::Fault& fault, const Instant& now) noexcept {
   if (fault_.kind != safety::FaultKind::kNone) return;
   fault_ = fault;
   send({.kind = EventKind::kFaultLatched, .fault = fault}, now);
+}
+
+void ServoLoop::stop_emergency(const Instant& now) noexcept {
+  latch({.kind = safety::FaultKind::kEmergencyStop, .tick = now.tick}, now);
 }
 
 void ServoLoop::send(Event event, const Instant& now) noexcept {
@@ -246,7 +282,11 @@ void ServoLoop::fill(Snapshot& snapshot, const Instant& now) const noexcept {
                            .sample_age = channel.sample_age,
                            .buttons = channel.sample.buttons,
                            .limits = channel.let_through.limits,
-                           .fault = channel.guard.fault()});
+                           .fault = channel.guard.fault(),
+                           .acceleration = channel.acceleration,
+                           .mean_force = channel.guard.mean_force(),
+                           .energy = channel.guard.energy(),
+                           .clutched = channel.workspace.is_clutched()});
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "engine/constraint.h"
 #include "safety/force_guard.h"
 #include "servo/mailbox.h"
+#include "servo/motion_filter.h"
+#include "servo/workspace.h"
 
 namespace haptic::servo {
 
@@ -22,14 +25,23 @@ struct Instant {
   std::uint64_t lateness_ns = 0;  // of the wake-up
 };
 
+/// What is set for one device alone.
+struct DeviceSettings {
+  safety::DeviceLimits limits{};
+  WorkspaceSettings workspace{};
+  MotionFilterSettings filter{};
+  std::optional<std::uint32_t> stop_button{};  // 0 to 31; pressing it is an emergency stop
+};
+
 struct ServoSettings {
   double rate_hz = 1000.0;
-  safety::GuardLimits limits;
-  std::uint32_t max_missed_ticks = 50;  // in a row, while armed
-  bool armed_from_start = false;        // only `simulate`, where no hand is near
-  bool paused_from_start = false;       // only a replay that starts in the middle,
-  std::uint64_t steps_from_start = 0;   // and how many steps were left there
-  engine::Clock clock = nullptr;        // for stage and transition times; none: nothing is timed
+  safety::GuardLimits limits;             // of every device
+  std::vector<DeviceSettings> devices{};  // in their order; of those beyond its end nothing is set
+  std::uint32_t max_missed_ticks = 50;    // in a row, while armed
+  bool armed_from_start = false;          // only `simulate`, where no hand is near
+  bool paused_from_start = false;         // only a replay that starts in the middle,
+  std::uint64_t steps_from_start = 0;     // and how many steps were left there
+  engine::Clock clock = nullptr;          // for stage and transition times; none: nothing is timed
 };
 
 class ServoLoop {
@@ -61,15 +73,21 @@ class ServoLoop {
   struct Channel {
     drivers::Device* device;
     safety::ForceGuard guard;
-    drivers::DeviceSample sample{};
-    bool sampled = false;     // there was a sample at some time
-    bool fresh = false;       // and it is not too old
-    bool was_fresh = false;   // in the tick before
-    double sample_age = 0.0;  // s
-    engine::Wrench wanted{};  // by the engine, on the user, world
+    Workspace workspace;
+    MotionFilter filter;
+    std::optional<std::uint32_t> stop_button{};
+    drivers::DeviceSample hand{};    // as it was measured, with the velocity of the filter
+    drivers::DeviceSample sample{};  // the same in the world
+    glm::dvec3 acceleration{0.0};    // m/s^2, world
+    bool sampled = false;            // there was a sample at some time
+    bool fresh = false;              // and it is not too old
+    bool was_fresh = false;          // in the tick before
+    double sample_age = 0.0;         // s
+    engine::Wrench wanted{};         // by the engine, on the hand, world's axes
     safety::GuardOutput let_through{};
   };
 
+  static Channel make_channel(const ServoSettings& settings, drivers::Device& device, std::size_t index);
   void receive_commands(const Instant& now) noexcept;
   void read_devices(const Instant& now) noexcept;
   void place_fingers() noexcept;
@@ -79,10 +97,11 @@ class ServoLoop {
   void publish(const Instant& now) noexcept;
 
   void obey(const Command& command, const Instant& now) noexcept;
-  EventKind arm() noexcept;
+  EventKind arm(WaitingForce& waiting) noexcept;
   EventKind resume(const Instant& now) noexcept;
   EventKind clear_fault() noexcept;
   EventKind latch_gently(safety::Fault fault, const Instant& now) noexcept;
+  void stop_emergency(const Instant& now) noexcept;
   EventKind swap_scene(PreparedScene* scene, const Instant& now) noexcept;
   void restart_ramps() noexcept;
   void begin_step(const Command& command) noexcept;
@@ -92,6 +111,7 @@ class ServoLoop {
   void finish_copy(const Instant& now) noexcept;
   void note(const Command& command, EventKind answer) noexcept;
 
+  void measure(Channel& channel, const Instant& now) noexcept;
   void want_forces() noexcept;
   void latch(const safety::Fault& fault, const Instant& now) noexcept;
   void send(Event event, const Instant& now) noexcept;

@@ -1,5 +1,6 @@
 // What the tick does with commands. Every command is answered by exactly one event.
 
+#include "safety/magnitude.h"
 #include "servo/servo_loop.h"
 
 namespace haptic::servo {
@@ -25,9 +26,10 @@ void ServoLoop::receive_commands(const Instant& now) noexcept {
 
 void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
   EventKind answer = EventKind::kDone;
+  WaitingForce waiting;
   switch (command.kind) {
     case CommandKind::kArm:
-      answer = arm();
+      answer = arm(waiting);
       break;
     case CommandKind::kDisarm:
       if (!armed_) answer = EventKind::kNothingToDo;
@@ -70,14 +72,31 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
     case CommandKind::kCopyState:
       begin_copy(command, now);
       return;
+    case CommandKind::kEmergencyStop:
+      stop_emergency(now);
+      break;
   }
   note(command, answer);
-  send({.kind = answer, .command = command.kind, .request = command.request, .fault = fault_}, now);
+  send({.kind = answer,
+        .command = command.kind,
+        .request = command.request,
+        .fault = fault_,
+        .waiting = waiting},
+       now);
 }
 
-EventKind ServoLoop::arm() noexcept {
+EventKind ServoLoop::arm(WaitingForce& waiting) noexcept {
   if (fault_.kind != safety::FaultKind::kNone) return EventKind::kFaultRefused;
   if (armed_) return EventKind::kNothingToDo;
+  // as the last tick left the world, even if that is paused: what comes when it goes on is told now
+  want_forces();
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const double force = safety::length(channels_[i].wanted.force);
+    const double limit = channels_[i].guard.limits().max_arm_force;
+    if (force <= limit || !channels_[i].device->info().exerts_force) continue;
+    waiting = {.device = static_cast<std::uint32_t>(i), .force = force, .limit = limit};
+    return EventKind::kForceWaits;
+  }
   armed_ = true;
   for (Channel& channel : channels_) channel.guard.arm();
   return EventKind::kDone;

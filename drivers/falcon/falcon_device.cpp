@@ -139,7 +139,11 @@ class FalconRoutine final : public DeviceRoutine {
 }  // namespace
 
 std::unique_ptr<Device> make_falcon(FalconSettings settings) {
-  DeviceInfo info{.name = settings.name, .driver = "falcon", .max_force = settings.control.max_force};
+  DeviceInfo info{.name = settings.name,
+                  .driver = "falcon",
+                  .max_force = settings.control.max_force,
+                  .travel_min = kTrustedLow,
+                  .travel_max = kTrustedHigh};
   const BasePose base = settings.world_from_base;
   return std::make_unique<ThreadedDevice>(std::move(info), base,
                                           std::make_unique<FalconRoutine>(std::move(settings)));

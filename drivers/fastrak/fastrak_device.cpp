@@ -110,8 +110,10 @@ class FastrakRoutine final : public DeviceRoutine {
 }  // namespace
 
 std::unique_ptr<Device> make_fastrak(FastrakSettings settings) {
-  DeviceInfo info{
-      .name = settings.name, .driver = "fastrak", .max_force = std::numeric_limits<double>::infinity()};
+  DeviceInfo info{.name = settings.name,
+                  .driver = "fastrak",
+                  .max_force = std::numeric_limits<double>::infinity(),
+                  .exerts_force = false};
   const BasePose base = settings.world_from_base;
   return std::make_unique<ThreadedDevice>(std::move(info), base,
                                           std::make_unique<FastrakRoutine>(std::move(settings)));

@@ -96,8 +96,10 @@ class HydraRoutine final : public DeviceRoutine {
 }  // namespace
 
 std::unique_ptr<Device> make_hydra(HydraSettings settings) {
-  DeviceInfo info{
-      .name = settings.name, .driver = "hydra", .max_force = std::numeric_limits<double>::infinity()};
+  DeviceInfo info{.name = settings.name,
+                  .driver = "hydra",
+                  .max_force = std::numeric_limits<double>::infinity(),
+                  .exerts_force = false};
   const BasePose base = settings.world_from_base;
   return std::make_unique<ThreadedDevice>(std::move(info), base,
                                           std::make_unique<HydraRoutine>(std::move(settings)));

@@ -8,7 +8,8 @@ namespace haptic::drivers {
 PlaybackDevice::PlaybackDevice(std::string name, std::vector<PathPoint> path, bool repeat)
     : info_{.name = std::move(name),
             .driver = "playback",
-            .max_force = std::numeric_limits<double>::infinity()},
+            .max_force = std::numeric_limits<double>::infinity(),
+            .exerts_force = false},
       path_(std::move(path)),
       repeat_(repeat) {}
 

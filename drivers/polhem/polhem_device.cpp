@@ -125,8 +125,10 @@ class UdpRoutine final : public DeviceRoutine {
 
 std::unique_ptr<Device> make_polhem(PolhemSettings settings) {
   const bool is_udp = settings.udp_port != 0;
-  DeviceInfo info{
-      .name = settings.name, .driver = "polhem", .max_force = is_udp ? 0.0 : settings.control.max_force};
+  DeviceInfo info{.name = settings.name,
+                  .driver = "polhem",
+                  .max_force = is_udp ? 0.0 : settings.control.max_force,
+                  .exerts_force = !is_udp};
   const BasePose base = settings.world_from_base;
   std::unique_ptr<DeviceRoutine> routine;
   if (is_udp) {

@@ -75,8 +75,10 @@ class SpacemouseRoutine final : public DeviceRoutine {
 }  // namespace
 
 std::unique_ptr<Device> make_spacemouse(SpacemouseSettings settings) {
-  DeviceInfo info{
-      .name = settings.name, .driver = "spacemouse", .max_force = std::numeric_limits<double>::infinity()};
+  DeviceInfo info{.name = settings.name,
+                  .driver = "spacemouse",
+                  .max_force = std::numeric_limits<double>::infinity(),
+                  .exerts_force = false};
   const BasePose base = settings.world_from_base;
   return std::make_unique<ThreadedDevice>(std::move(info), base,
                                           std::make_unique<SpacemouseRoutine>(std::move(settings)));

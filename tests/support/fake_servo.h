@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -36,6 +37,12 @@ class FakeServo {
     fault_ = fault;
     armed_ = false;
     mailbox_.events.push({.kind = servo::EventKind::kFaultLatched, .tick = tick_, .fault = fault_});
+  }
+
+  /// From now on this keeps it from being armed; none: nothing does.
+  void let_force_wait(const std::optional<servo::WaitingForce>& waiting) {
+    const std::lock_guard lock(mutex_);
+    waiting_ = waiting;
   }
 
   void miss_ticks(std::uint64_t count) {
@@ -75,11 +82,13 @@ class FakeServo {
     servo::Command command;
     while (!frozen_ && mailbox_.commands.pop(command)) {
       seen_.push_back(command.kind);
-      mailbox_.events.push({.kind = obey(command),
+      const servo::EventKind answer = obey(command);
+      mailbox_.events.push({.kind = answer,
                             .command = command.kind,
                             .request = command.request,
                             .tick = tick_,
                             .fault = fault_,
+                            .waiting = waiting_.value_or(servo::WaitingForce()),
                             .copy = command.copy});
     }
   }
@@ -87,7 +96,10 @@ class FakeServo {
   servo::EventKind obey(const servo::Command& command) {
     switch (command.kind) {
       case servo::CommandKind::kArm:
-        return fault_.kind != safety::FaultKind::kNone ? servo::EventKind::kFaultRefused : set(armed_, true);
+        if (fault_.kind != safety::FaultKind::kNone) {
+          return servo::EventKind::kFaultRefused;
+        }
+        return waiting_ ? servo::EventKind::kForceWaits : set(armed_, true);
       case servo::CommandKind::kDisarm:
         return set(armed_, false);
       case servo::CommandKind::kPause:
@@ -108,6 +120,11 @@ class FakeServo {
         }
         armed_ = false;
         fault_ = command.fault;
+        mailbox_.events.push({.kind = servo::EventKind::kFaultLatched, .tick = tick_, .fault = fault_});
+        return servo::EventKind::kDone;
+      case servo::CommandKind::kEmergencyStop:
+        armed_ = false;
+        fault_ = {.kind = safety::FaultKind::kEmergencyStop, .tick = tick_};
         mailbox_.events.push({.kind = servo::EventKind::kFaultLatched, .tick = tick_, .fault = fault_});
         return servo::EventKind::kDone;
       case servo::CommandKind::kSwapScene:
@@ -133,6 +150,7 @@ class FakeServo {
   bool paused_ = false;
   std::uint64_t tick_ = 0;
   safety::Fault fault_;
+  std::optional<servo::WaitingForce> waiting_;
   std::unique_ptr<servo::PreparedScene> scene_;
   std::vector<servo::CommandKind> seen_;
   std::jthread thread_;

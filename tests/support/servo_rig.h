@@ -73,7 +73,13 @@ inline std::shared_ptr<engine::Scene> wall_scene(const std::vector<std::string>&
 
 /// Limits of which none acts within the tests' forces and speeds.
 inline safety::GuardLimits wide_limits() {
-  return {.max_force = 1e3, .max_force_rate = 1e9, .max_speed = 2.0, .arm_ramp = 0.0, .max_sample_age = 0.02};
+  return {.max_force = 1e3,
+          .max_force_rate = 1e9,
+          .max_speed = 2.0,
+          .arm_ramp = 0.0,
+          .max_sample_age = 0.02,
+          .max_energy = 1e9,
+          .max_arm_force = 1e9};
 }
 
 class ServoRig {

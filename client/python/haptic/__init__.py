@@ -19,7 +19,7 @@ from haptic import edits, v1
 from haptic.address import Address, Identity
 from haptic.connection import Connection, Events, connect
 from haptic.drive import DriveLease
-from haptic.enums import Delivery, EventKind, FaultKind, Role, State, Topic
+from haptic.enums import Delivery, EventKind, FaultKind, LimitKind, Role, State, Topic
 from haptic.errors import (
     Busy,
     Error,
@@ -56,6 +56,7 @@ __all__ = [
     "Hips",
     "Identity",
     "Invalid",
+    "LimitKind",
     "NotFound",
     "NothingToDo",
     "Objects",

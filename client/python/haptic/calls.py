@@ -116,12 +116,20 @@ class Calls(ABC):
     # --- forces: role DRIVE; faults: role ADMIN --------------------------------------------------------------------
 
     async def arm(self) -> None:
-        """Allows force. Raises NothingToDo if it is allowed, FaultLatched, or Refused while another client drives."""
+        """Allows force.
+
+        Raises NothingToDo if it is allowed, FaultLatched, Refused while another client drives, or Error while more than
+        safety.max_arm_force waits to push on a device.
+        """
         await self.call(v1.Request(arm=v1.Arm()))
 
     async def disarm(self) -> None:
         """Forbids force. Raises NothingToDo if it is forbidden."""
         await self.call(v1.Request(disarm=v1.Disarm()))
+
+    async def emergency_stop(self) -> None:
+        """Ends all force in the next tick and latches a fault; role SCRIPT, whoever drives. No limit of rate holds it up."""
+        await self.call(v1.Request(emergency_stop=v1.EmergencyStop()))
 
     async def clear_fault(self) -> None:
         """Clears what is latched. Find its cause first; raises NothingToDo if there is none."""

@@ -53,6 +53,22 @@ class FaultKind(IntEnum):
     STALE_SAMPLE = v1.FAULT_STALE_SAMPLE
     MISSED_TICKS = v1.FAULT_MISSED_TICKS
     LOST_DRIVER = v1.FAULT_LOST_DRIVER
+    OVER_TRAVEL = v1.FAULT_OVER_TRAVEL
+    ENERGY = v1.FAULT_ENERGY
+    LOST_DEVICE = v1.FAULT_LOST_DEVICE
+    EMERGENCY_STOP = v1.FAULT_EMERGENCY_STOP
+    STILL_SAMPLE = v1.FAULT_STILL_SAMPLE
+
+
+class LimitKind(IntEnum):
+    """What the guard does to a force that is too much, without a fault; bit k of Devices.limits is that of kind k."""
+
+    NONE = v1.LIMIT_NONE
+    FORCE = v1.LIMIT_FORCE
+    RATE = v1.LIMIT_RATE
+    RAMP = v1.LIMIT_RAMP
+    MEAN_FORCE = v1.LIMIT_MEAN_FORCE
+    CLUTCH = v1.LIMIT_CLUTCH
 
 
 class EventKind(IntEnum):

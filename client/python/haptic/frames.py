@@ -74,6 +74,9 @@ class Devices:
     buttons: Indices  # (n,) bit k: button k is down
     present: Booleans  # (n,) there is a fresh sample
     fault: Small  # (n,) haptic.FaultKind
+    acceleration: Floats  # (n, 3) m/s^2; zero from a daemon that does not tell it, as all that follow
+    limits: Indices  # (n,) bit k: haptic.LimitKind k acts
+    energy: Floats  # (n,) given to the user beyond what was taken, since it was armed, J
 
 
 @dataclass(frozen=True)
@@ -196,6 +199,10 @@ def _devices(frame: v1.DevicesFrame) -> Devices:
     columns["buttons"] = _array(frame.buttons, np.uint32)
     columns["present"] = _array(frame.present, np.bool_)
     columns["fault"] = _enumerators(frame.fault, max(FaultKind))
+    rows = len(columns["present"])
+    columns["acceleration"] = _columns("acceleration", frame.acceleration or np.zeros(3 * rows), 3)
+    columns["limits"] = _array(frame.limits or np.zeros(rows), np.uint32)
+    columns["energy"] = _array(frame.energy or np.zeros(rows), np.float64)
     _check_rows("devices", **columns)
     return Devices(**columns)
 

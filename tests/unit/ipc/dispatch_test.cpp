@@ -18,7 +18,7 @@ const std::map<std::string, v1::Role>& expected_roles() {
       {"step", v1::SCRIPT},         {"get_stats", v1::OBSERVE},    {"subscribe", v1::OBSERVE},
       {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT},
       {"acquire_drive", v1::DRIVE}, {"release_drive", v1::DRIVE},  {"heartbeat", v1::DRIVE},
-      {"move_device", v1::DRIVE},   {"get_state", v1::OBSERVE}};
+      {"move_device", v1::DRIVE},   {"get_state", v1::OBSERVE},    {"emergency_stop", v1::SCRIPT}};
   return kRoles;
 }
 
@@ -72,6 +72,7 @@ class Office {
   }
 
   std::size_t commands() const { return mailbox_->commands.read_available(); }
+  bool is_stopping() const { return mailbox_->emergency_stop; }
   Publisher& publisher() { return publisher_; }
 
  private:
@@ -153,6 +154,20 @@ TEST(Dispatch, SaysBusyWhenTheServosQueueIsFull) {
     ASSERT_TRUE(answer) << call;
     EXPECT_EQ(answer->error().code(), v1::Error::BUSY) << call;
   }
+}
+
+TEST(Dispatch, AnEmergencyStopNeedsNoRoomInTheServosQueue) {
+  Office office(256);
+  const auto answer = office.ask(request_of("emergency_stop"), v1::SCRIPT);
+  ASSERT_TRUE(answer);
+  EXPECT_TRUE(answer->has_done());
+  EXPECT_TRUE(office.is_stopping());
+  Office roomy;
+  EXPECT_FALSE(roomy.ask(request_of("emergency_stop"), v1::SCRIPT)) << "waits for the servo thread";
+  EXPECT_TRUE(roomy.is_stopping());
+  Office observed;
+  observed.ask(request_of("emergency_stop"), v1::OBSERVE);
+  EXPECT_FALSE(observed.is_stopping());
 }
 
 TEST(Dispatch, AnswersStatusFromTheNewestSnapshot) {

@@ -5,8 +5,10 @@
 
 #include <limits>
 
+#include "ipc/convert.h"
 #include "proto/framing.h"
 #include "proto/protocol.h"
+#include "safety/limits.h"
 
 namespace haptic::ipc {
 namespace {
@@ -87,6 +89,38 @@ TEST(EncodeFrame, TellsWhatATickFollowsFrom) {
   EXPECT_EQ(inputs.command(1).kind(), v1::InputsFrame::SCENE);
   EXPECT_EQ(inputs.command(1).scene_revision(), 5U);
   EXPECT_EQ(inputs.state_hash(), 0x123456789abcdef0U);
+}
+
+TEST(EncodeFrame, TellsWhatTheGuardDoesToADevice) {
+  servo::Snapshot snapshot;
+  servo::DeviceSnapshot device{};
+  device.limits = safety::kLimitRate | safety::kLimitClutch;
+  device.acceleration = {1, 2, 3};
+  device.energy = -0.25;
+  device.fault.kind = safety::FaultKind::kOverTravel;
+  snapshot.devices = {device};
+  v1::Frame frame;
+  fill_frame(snapshot, topic_bit(v1::DEVICES), {}, 0, frame);
+  const v1::DevicesFrame& devices = frame.devices();
+  EXPECT_EQ(devices.limits(0), 1U << v1::LIMIT_RATE | 1U << v1::LIMIT_CLUTCH);
+  ASSERT_EQ(devices.acceleration_size(), 3);
+  EXPECT_EQ(devices.acceleration(2), 3.0);
+  EXPECT_EQ(devices.energy(0), -0.25);
+  EXPECT_EQ(devices.fault(0), v1::FAULT_OVER_TRAVEL);
+}
+
+TEST(EncodeFrame, FaultsAreToldInWordsWithTheirUnit) {
+  const auto told = [](safety::FaultKind kind, double value, double limit) {
+    return in_words(to_wire({.kind = kind, .value = value, .limit = limit}, {}));
+  };
+  EXPECT_EQ(told(safety::FaultKind::kOverTravel, -0.115, -0.1),
+            "over travel, -0.115 m where -0.1 m is allowed");
+  EXPECT_EQ(told(safety::FaultKind::kOverTravel, 0.02, 0.0), "over travel, 0.02 m where 0 m is allowed");
+  EXPECT_EQ(told(safety::FaultKind::kEnergy, 1.25, 1.0),
+            "too much energy given to the user, 1.25 J where 1 J is allowed");
+  EXPECT_EQ(told(safety::FaultKind::kStillSample, 0.6, 0.5),
+            "the same position all the time, 0.6 s where 0.5 s is allowed");
+  EXPECT_EQ(told(safety::FaultKind::kEmergencyStop, 0.0, 0.0), "emergency stop");
 }
 
 TEST(EncodeFrame, WithItsHeadIsTheEnvelopeThatProtobufWouldWrite) {

@@ -41,6 +41,7 @@ std::string error_of(Connection& daemon, const std::function<void(v1::Request&)>
 void arm(v1::Request& request) { request.mutable_arm(); }
 void acquire(v1::Request& request) { request.mutable_acquire_drive(); }
 void beat(v1::Request& request) { request.mutable_heartbeat(); }
+void stop(v1::Request& request) { request.mutable_emergency_stop(); }
 void get_status(v1::Request& request) { request.mutable_get_status(); }
 
 // the daemon has noticed that others are gone
@@ -150,6 +151,19 @@ TEST(Limits, AnswerBusyBeyondTheRateButNeverToDisarm) {
             "no error");
 }
 
+TEST(Limits, AnswerAnEmergencyStopWhateverWasAskedBefore) {
+  ServerSettings settings;
+  settings.session.requests_per_second = 5;
+  settings.session.open_requests = 1;
+  TestDaemon daemon(settings);
+  Connection client(at(daemon));
+  for (int i = 0; i < 9; ++i) {
+    error_of<client::Busy>(client, get_status);
+  }
+  EXPECT_EQ(error_of<client::Error>(client, stop), "no error");
+  EXPECT_EQ(daemon.servo().seen(), std::vector{servo::CommandKind::kEmergencyStop});
+}
+
 TEST(Limits, CutAFloodOffInWords) {
   ServerSettings settings;
   settings.session.requests_per_second = 20;
@@ -199,6 +213,34 @@ TEST(Drive, WhileOneHoldsTheLeaseOthersCannotArmButCanDisarm) {
   ask(other, [](v1::Request& request) { request.mutable_disarm(); });
   ask(driver, [](v1::Request& request) { request.mutable_release_drive(); });
   ask(other, arm);
+}
+
+TEST(Drive, WhileOneHoldsTheLeaseAnybodyWhoMayDisarmStopsInAnEmergency) {
+  TestDaemon daemon(patient_drive());
+  Connection driver(at(daemon));
+  Connection other(at(daemon));
+  ask(driver, acquire);
+  ask(driver, arm);
+  ask(other, stop);
+  EXPECT_THROW(ask(driver, arm), client::FaultLatched);
+  std::optional<v1::Envelope> message;
+  do {
+    message = driver.receive(std::chrono::seconds(5));
+    ASSERT_TRUE(message);
+  } while (message->event().kind() != v1::Event::FAULT_LATCHED);
+  EXPECT_EQ(message->event().fault().kind(), v1::FAULT_EMERGENCY_STOP);
+  EXPECT_EQ(message->event().message(), "fault latched: emergency stop");
+}
+
+TEST(Drive, ArmingIsRefusedWithTheDeviceAndTheForceThatWaits) {
+  TestDaemon daemon;
+  daemon.servo().let_force_wait(servo::WaitingForce{.device = 0, .force = 0.8341, .limit = 0.5});
+  Connection client(at(daemon));
+  EXPECT_EQ(error_of<client::Error>(client, arm),
+            "not armed: left: 0.834 N wait to push on it, where at most 0.5 N may when it is armed "
+            "(safety.max_arm_force); take it out of what it touches, then arm again");
+  daemon.servo().let_force_wait(std::nullopt);
+  EXPECT_EQ(error_of<client::Error>(client, arm), "no error");
 }
 
 TEST(Drive, AHolderThatDiesLatchesAFaultOfItsName) {
