@@ -13,12 +13,13 @@ enum class FaultKind : std::uint8_t {
   kStaleSample,  // value and limit in s
   kMissedTicks,  // value and limit in ticks
   kLostDriver,   // value and limit in s of silence; 0: the connection ended
+  kLostDevice,   // value and limit are 0
 };
 
 /// In lower case, e.g. "over_speed"; "none" for no fault.
 constexpr const char* name_of(FaultKind kind) noexcept {
-  constexpr const char* kNames[] = {"none",         "not_finite",   "over_speed",
-                                    "stale_sample", "missed_ticks", "lost_driver"};
+  constexpr const char* kNames[] = {"none",         "not_finite",  "over_speed", "stale_sample",
+                                    "missed_ticks", "lost_driver", "lost_device"};
   return kNames[static_cast<int>(kind)];
 }
 

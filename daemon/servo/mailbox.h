@@ -17,6 +17,7 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/device.h"
 #include "engine/carry_map.h"
 #include "engine/constraint.h"
 #include "engine/world.h"
@@ -147,6 +148,8 @@ struct DeviceSnapshot {
   std::uint32_t buttons;
   std::uint32_t limits;  // safety::Limit bits
   safety::Fault fault;
+  drivers::DevicePhase phase = drivers::DevicePhase::kReady;
+  bool armed = false;  // its force is allowed: not so of one that came after arming
 };
 
 /// One tick as the rest of the daemon sees it. The vectors have their capacity from the start and only change

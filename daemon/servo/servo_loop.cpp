@@ -48,6 +48,10 @@ ServoLoop::ServoLoop(const ServoSettings& settings, std::span<drivers::Device* c
     limits.max_force = std::min(limits.max_force, device->info().max_force);
     channels_.push_back({.device = device, .guard = safety::ForceGuard(limits)});
   }
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    channels_[i].state = channels_[i].device->state();
+    channels_[i].stops_alone = i < settings.stops_alone.size() && settings.stops_alone[i];
+  }
   if (!settings.armed_from_start) return;
   armed_ = true;
   for (Channel& channel : channels_) channel.guard.arm_at_once();
@@ -61,6 +65,7 @@ void ServoLoop::tick(const Instant& now) noexcept {
   receive_commands(now);
   finish_stage(Stage::kCommands);
   read_devices(now);
+  find_losses(now);
   finish_stage(Stage::kRead);
   place_fingers();
   step_world();
@@ -162,7 +167,7 @@ void ServoLoop::guard_forces(const Instant& now) noexcept {
         .force = channel.wanted.force,
         .torque = channel.wanted.torque};
     channel.let_through = channel.guard.guard(input, dt_);
-    if (channel.guard.is_cut()) latch(channel.guard.fault(), now);
+    if (channel.guard.is_cut() && !keeps_its_fault(channel, now)) latch(channel.guard.fault(), now);
   }
   if (!cut_) return;
   // what one device did stops them all, and in this very tick
@@ -246,7 +251,9 @@ void ServoLoop::fill(Snapshot& snapshot, const Instant& now) const noexcept {
                            .sample_age = channel.sample_age,
                            .buttons = channel.sample.buttons,
                            .limits = channel.let_through.limits,
-                           .fault = channel.guard.fault()});
+                           .fault = channel.guard.fault(),
+                           .phase = channel.state.phase,
+                           .armed = channel.guard.armed()});
   }
 }
 

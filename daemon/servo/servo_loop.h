@@ -25,6 +25,7 @@ struct Instant {
 struct ServoSettings {
   double rate_hz = 1000.0;
   safety::GuardLimits limits;
+  std::vector<bool> stops_alone{};      // of each device: its loss stops no other; none: it does
   std::uint32_t max_missed_ticks = 50;  // in a row, while armed
   bool armed_from_start = false;        // only `simulate`, where no hand is near
   bool paused_from_start = false;       // only a replay that starts in the middle,
@@ -66,12 +67,16 @@ class ServoLoop {
     bool fresh = false;       // and it is not too old
     bool was_fresh = false;   // in the tick before
     double sample_age = 0.0;  // s
-    engine::Wrench wanted{};  // by the engine, on the user, world
+    drivers::DeviceState state{};
+    bool stops_alone = false;     // when it is lost
+    bool has_told_fault = false;  // that is its own alone
+    engine::Wrench wanted{};      // by the engine, on the user, world
     safety::GuardOutput let_through{};
   };
 
   void receive_commands(const Instant& now) noexcept;
   void read_devices(const Instant& now) noexcept;
+  void find_losses(const Instant& now) noexcept;
   void place_fingers() noexcept;
   void step_world() noexcept;
   void guard_forces(const Instant& now) noexcept;
@@ -80,6 +85,8 @@ class ServoLoop {
 
   void obey(const Command& command, const Instant& now) noexcept;
   EventKind arm() noexcept;
+  bool can_arm_more() const noexcept;
+  bool has_fault() const noexcept;
   EventKind resume(const Instant& now) noexcept;
   EventKind clear_fault() noexcept;
   EventKind latch_gently(safety::Fault fault, const Instant& now) noexcept;
@@ -94,6 +101,7 @@ class ServoLoop {
 
   void want_forces() noexcept;
   void latch(const safety::Fault& fault, const Instant& now) noexcept;
+  bool keeps_its_fault(Channel& channel, const Instant& now) noexcept;
   void send(Event event, const Instant& now) noexcept;
 
   void count_misses(const Instant& now) noexcept;

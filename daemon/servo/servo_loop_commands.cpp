@@ -76,10 +76,13 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
 }
 
 EventKind ServoLoop::arm() noexcept {
-  if (fault_.kind != safety::FaultKind::kNone) return EventKind::kFaultRefused;
-  if (armed_) return EventKind::kNothingToDo;
+  if (has_fault()) return EventKind::kFaultRefused;
+  if (armed_ && !can_arm_more()) return EventKind::kNothingToDo;
   armed_ = true;
-  for (Channel& channel : channels_) channel.guard.arm();
+  // one that is plugged in later gets no force until somebody arms again
+  for (Channel& channel : channels_) {
+    if (channel.state.phase == drivers::DevicePhase::kReady) channel.guard.arm();
+  }
   return EventKind::kDone;
 }
 
@@ -94,10 +97,13 @@ EventKind ServoLoop::resume(const Instant& now) noexcept {
 }
 
 EventKind ServoLoop::clear_fault() noexcept {
-  if (fault_.kind == safety::FaultKind::kNone) return EventKind::kNothingToDo;
+  if (!has_fault()) return EventKind::kNothingToDo;
   fault_ = {};
   cut_ = false;
-  for (Channel& channel : channels_) channel.guard.clear();
+  for (Channel& channel : channels_) {
+    channel.guard.clear();
+    channel.has_told_fault = false;
+  }
   return EventKind::kDone;
 }
 

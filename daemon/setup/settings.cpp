@@ -1,17 +1,26 @@
 #include "setup/settings.h"
 
+#include <utility>
+#include <vector>
+
 #include "rt/tick_clock.h"
 
 namespace haptic::setup {
 
 servo::ServoSettings servo_settings(const v1::DaemonConfig& config) {
   const v1::Safety& safety = config.safety();
+  std::vector<bool> stops_alone;
+  stops_alone.reserve(static_cast<std::size_t>(config.device_size()));
+  for (const v1::Device& device : config.device()) {
+    stops_alone.push_back(device.on_loss() == v1::Device::STOP_DEVICE);
+  }
   return {.rate_hz = config.servo().rate_hz(),
           .limits = {.max_force = safety.max_force(),
                      .max_force_rate = safety.max_force_rate(),
                      .max_speed = safety.max_speed(),
                      .arm_ramp = safety.arm_ramp(),
                      .max_sample_age = safety.max_sample_age()},
+          .stops_alone = std::move(stops_alone),
           .max_missed_ticks = safety.max_missed_ticks()};
 }
 
