@@ -21,6 +21,8 @@ const char* words_of(v1::FaultKind kind) noexcept {
       return "missed ticks";
     case v1::FAULT_LOST_DRIVER:
       return "lost driver";
+    case v1::FAULT_LOST_DEVICE:
+      return "lost device";
     default:
       return "fault";
   }
@@ -68,10 +70,35 @@ v1::FaultKind to_wire(safety::FaultKind kind) noexcept {
       return v1::FAULT_STALE_SAMPLE;
     case safety::FaultKind::kMissedTicks:
       return v1::FAULT_MISSED_TICKS;
+    case safety::FaultKind::kLostDevice:
+      return v1::FAULT_LOST_DEVICE;
     case safety::FaultKind::kLostDriver:
       break;
   }
   return v1::FAULT_LOST_DRIVER;
+}
+
+v1::DevicePhase to_wire(drivers::DevicePhase phase) noexcept {
+  switch (phase) {
+    case drivers::DevicePhase::kFound:
+      return v1::DEVICE_FOUND;
+    case drivers::DevicePhase::kOpening:
+      return v1::DEVICE_OPENING;
+    case drivers::DevicePhase::kHoming:
+      return v1::DEVICE_HOMING;
+    case drivers::DevicePhase::kReady:
+      return v1::DEVICE_READY;
+    case drivers::DevicePhase::kAbsent:
+      break;
+  }
+  return v1::DEVICE_ABSENT;
+}
+
+v1::DevicePhase phase_of(const servo::DeviceSnapshot& device) noexcept {
+  if (device.phase != drivers::DevicePhase::kReady) return to_wire(device.phase);
+  if (device.fault.kind != safety::FaultKind::kNone) return v1::DEVICE_FAULT;
+  if (!device.present) return v1::DEVICE_ABSENT;
+  return device.armed ? v1::DEVICE_ARMED : v1::DEVICE_READY;
 }
 
 v1::Fault to_wire(const safety::Fault& fault, std::span<const v1::DeviceDescription> devices) {

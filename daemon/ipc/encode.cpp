@@ -107,6 +107,7 @@ void fill_devices(const servo::Snapshot& snapshot, v1::DevicesFrame& out) {
     out.add_buttons(device.buttons);
     out.add_present(device.present);
     out.add_fault(to_wire(device.fault.kind));
+    out.add_phase(phase_of(device));
   }
 }
 

@@ -19,7 +19,7 @@ from haptic import edits, v1
 from haptic.address import Address, Identity
 from haptic.connection import Connection, Events, connect
 from haptic.drive import DriveLease
-from haptic.enums import Delivery, EventKind, FaultKind, Role, State, Topic
+from haptic.enums import Delivery, DeviceAction, DevicePhase, EventKind, FaultKind, Role, State, Topic
 from haptic.errors import (
     Busy,
     Error,
@@ -44,6 +44,8 @@ __all__ = [
     "Connection",
     "Contacts",
     "Delivery",
+    "DeviceAction",
+    "DevicePhase",
     "Devices",
     "DriveLease",
     "Error",

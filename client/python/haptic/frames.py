@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from haptic import v1
-from haptic.enums import FaultKind, State
+from haptic.enums import DevicePhase, FaultKind, State
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.uint32]
@@ -74,6 +74,7 @@ class Devices:
     buttons: Indices  # (n,) bit k: button k is down
     present: Booleans  # (n,) there is a fresh sample
     fault: Small  # (n,) haptic.FaultKind
+    phase: Small  # (n,) haptic.DevicePhase; 0 of a daemon that does not tell it
 
 
 @dataclass(frozen=True)
@@ -196,6 +197,8 @@ def _devices(frame: v1.DevicesFrame) -> Devices:
     columns["buttons"] = _array(frame.buttons, np.uint32)
     columns["present"] = _array(frame.present, np.bool_)
     columns["fault"] = _enumerators(frame.fault, max(FaultKind))
+    untold = [0] * len(frame.fault)  # by a daemon that has no phases
+    columns["phase"] = _enumerators(frame.phase or untold, max(DevicePhase))
     _check_rows("devices", **columns)
     return Devices(**columns)
 
