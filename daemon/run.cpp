@@ -139,6 +139,18 @@ std::vector<ipc::PlaceDevice> places_of(const setup::DeviceSet& devices) {
   return places;
 }
 
+std::vector<ipc::DeviceKeeper> keepers_of(const setup::DeviceSet& devices) {
+  std::vector<ipc::DeviceKeeper> keepers;
+  keepers.reserve(devices.devices().size());
+  for (drivers::Device* const device : devices.devices()) {
+    keepers.push_back({.state = [device] { return device->state(); },
+                       .words = [device] { return device->words(); },
+                       .knows = [device](drivers::DeviceAction action) { return device->knows(action); },
+                       .request = [device](drivers::DeviceAction action) { device->request(action); }});
+  }
+  return keepers;
+}
+
 v1::RealTime describe_rights(const rt::RealtimeReport& report) {
   v1::RealTime told;
   told.set_fifo(report.fifo);
@@ -207,7 +219,8 @@ void run(const RunOptions& options) {
                             const rt::MemoryMayRunOut tolerated;
                             return builder.from_edit(request, edited);
                           },
-                      .place_device = places_of(devices)});
+                      .place_device = places_of(devices),
+                      .keepers = keepers_of(devices)});
   const StopWaiter waiter(signals, [&] {
     spdlog::info("stopping");
     // first what a hand feels, then what a screen shows

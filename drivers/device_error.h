@@ -5,10 +5,16 @@
 
 namespace haptic::drivers {
 
-/// A device cannot be made, opened or started; the message tells a person why, and names the device.
+/// A device cannot be made, opened or started; the message tells a person why, and how to mend it.
 class DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// It is not connected: plugging it in mends that.
+class DeviceAbsent : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
 };
 
 }  // namespace haptic::drivers

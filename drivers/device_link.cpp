@@ -34,6 +34,7 @@ void DeviceLink::write(Nanoseconds now, const ForceCommand& command) noexcept {
 
 void DeviceLink::publish(const DeviceSample& sample) noexcept {
   measured_.write({.sample = sample, .counts = true});
+  if (life_ != nullptr) life_->ready();
 }
 
 void DeviceLink::publish_nothing() noexcept { measured_.write({}); }

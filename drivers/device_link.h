@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "drivers/device.h"
+#include "drivers/device_life.h"
 #include "rt/triple_buffer.h"
 
 namespace haptic::drivers {
@@ -28,7 +29,9 @@ inline constexpr Nanoseconds kForceLifetime = 3'000'000;
 
 class DeviceLink {
  public:
-  explicit DeviceLink(const BasePose& world_from_base = {}) : world_from_base_(world_from_base) {}
+  /// `life`, if given, becomes ready with each sample that is published.
+  explicit DeviceLink(const BasePose& world_from_base = {}, DeviceLife* life = nullptr)
+      : world_from_base_(world_from_base), life_(life) {}
 
   // Servo thread; real-time safe.
 
@@ -61,6 +64,7 @@ class DeviceLink {
   };
 
   BasePose world_from_base_;
+  DeviceLife* life_;
   rt::TripleBuffer<Measured> measured_;
   rt::TripleBuffer<Commanded> commanded_;
 };

@@ -70,6 +70,11 @@ void Announcer::announce(const servo::Event& event, const v1::SceneDescription& 
   }
 }
 
+void Announcer::announce(v1::Event event, std::uint64_t tick) {
+  event.set_tick(tick);
+  tell(event);
+}
+
 void Announcer::poll(SteadyClock::time_point now) {
   if (missed_ == 0 || now < next_missed_) {
     return;

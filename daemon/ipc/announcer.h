@@ -20,6 +20,9 @@ class Announcer {
   /// An event of the servo thread. `scene` is the one that runs after it.
   void announce(const servo::Event& event, const v1::SceneDescription& scene, SteadyClock::time_point now);
 
+  /// Something that the io thread has seen by itself.
+  void announce(v1::Event event, std::uint64_t tick);
+
   /// Tells of missed ticks that were held back.
   void poll(SteadyClock::time_point now);
 

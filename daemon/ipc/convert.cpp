@@ -36,6 +36,8 @@ const char* words_of(v1::FaultKind kind) noexcept {
       return "emergency stop";
     case v1::FAULT_STILL_SAMPLE:
       return "the same position all the time";
+    case v1::FAULT_LOST_DEVICE:
+      return "lost device";
     default:
       return "fault";
   }
@@ -96,10 +98,35 @@ v1::FaultKind to_wire(safety::FaultKind kind) noexcept {
       return v1::FAULT_EMERGENCY_STOP;
     case safety::FaultKind::kStillSample:
       return v1::FAULT_STILL_SAMPLE;
+    case safety::FaultKind::kLostDevice:
+      return v1::FAULT_LOST_DEVICE;
     case safety::FaultKind::kLostDriver:
       break;
   }
   return v1::FAULT_LOST_DRIVER;
+}
+
+v1::DevicePhase to_wire(drivers::DevicePhase phase) noexcept {
+  switch (phase) {
+    case drivers::DevicePhase::kFound:
+      return v1::DEVICE_FOUND;
+    case drivers::DevicePhase::kOpening:
+      return v1::DEVICE_OPENING;
+    case drivers::DevicePhase::kHoming:
+      return v1::DEVICE_HOMING;
+    case drivers::DevicePhase::kReady:
+      return v1::DEVICE_READY;
+    case drivers::DevicePhase::kAbsent:
+      break;
+  }
+  return v1::DEVICE_ABSENT;
+}
+
+v1::DevicePhase phase_of(const servo::DeviceSnapshot& device) noexcept {
+  if (device.phase != drivers::DevicePhase::kReady) return to_wire(device.phase);
+  if (device.fault.kind != safety::FaultKind::kNone) return v1::DEVICE_FAULT;
+  if (!device.present) return v1::DEVICE_ABSENT;
+  return device.armed ? v1::DEVICE_ARMED : v1::DEVICE_READY;
 }
 
 v1::Fault to_wire(const safety::Fault& fault, std::span<const v1::DeviceDescription> devices) {

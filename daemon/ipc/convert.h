@@ -12,6 +12,11 @@ namespace haptic::ipc {
 v1::ConstraintState to_wire(engine::ConstraintState state) noexcept;
 v1::FaultKind to_wire(safety::FaultKind kind) noexcept;
 
+v1::DevicePhase to_wire(drivers::DevicePhase phase) noexcept;
+
+/// Where the device stands for a client: a fault or being armed counts once the device itself is ready.
+v1::DevicePhase phase_of(const servo::DeviceSnapshot& device) noexcept;
+
 /// Names the device, where the fault is one device's.
 v1::Fault to_wire(const safety::Fault& fault, std::span<const v1::DeviceDescription> devices);
 

@@ -37,6 +37,7 @@ constexpr std::array kRows = {
     Row{v1::Request::kReleaseDrive, v1::DRIVE, handle_release_drive},
     Row{v1::Request::kHeartbeat, v1::DRIVE, handle_heartbeat},
     Row{v1::Request::kMoveDevice, v1::DRIVE, handle_move_device},
+    Row{v1::Request::kManageDevice, v1::DRIVE, handle_manage_device},
     Row{v1::Request::kClearFault, v1::ADMIN, handle_servo_command},
 };
 

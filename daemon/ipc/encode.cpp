@@ -110,6 +110,7 @@ void fill_devices(const servo::Snapshot& snapshot, v1::DevicesFrame& out) {
     add(*out.mutable_acceleration(), device.acceleration);
     out.add_limits(device.limits);
     out.add_energy(device.energy);
+    out.add_phase(phase_of(device));
   }
 }
 

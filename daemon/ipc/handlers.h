@@ -12,6 +12,7 @@ using Handler = void (*)(Desk& desk, const Caller& caller, const v1::Request& re
 void handle_get_status(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_devices.cpp
 void handle_list_devices(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+void handle_manage_device(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_scene.cpp
 void handle_get_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 void handle_load_scene(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "ipc/announcer.h"
+#include "ipc/device_watch.h"
 #include "ipc/session.h"
 #include "ipc/tls.h"
 
@@ -45,6 +46,9 @@ class Server::Impl {
         announcer_(services_.devices, [this](const v1::Event& event) { broadcast(event); }),
         servo_(services_.mailbox, settings_.servo_patience,
                [this](const servo::Event& event) { take_event(event); }),
+        device_watch_(
+            services_,
+            [this](const v1::Event& event) { announcer_.announce(event, publisher_.latest().tick); }),
         scenes_(services_, servo_),
         lease_(settings_.drive, servo_),
         desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [this] { return count_clients(); },
@@ -208,6 +212,7 @@ class Server::Impl {
     servo_.poll(now);
     scenes_.poll(now);
     announcer_.poll(now);
+    device_watch_.poll(now);
     lease_.poll(now);
     // the event that a scene runs was sent before the first snapshot of it
     publisher_.drain(services_.mailbox.snapshots, [this, now] { servo_.poll(now); });
@@ -289,6 +294,7 @@ class Server::Impl {
   Announcer announcer_;
   ServoLink servo_;
   Publisher publisher_;
+  DeviceWatch device_watch_;
   SceneStore scenes_;
   DriveLease lease_;
   Desk desk_;

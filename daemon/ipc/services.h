@@ -59,6 +59,14 @@ struct LiveForce {
 /// Places a virtual device and tells the newest force.
 using PlaceDevice = std::function<LiveForce(const DevicePlace&)>;
 
+/// What the io thread asks of a device's life; each may wait for the device's thread for a moment.
+struct DeviceKeeper {
+  std::function<drivers::DeviceState()> state;
+  std::function<drivers::DeviceWords()> words;
+  std::function<bool(drivers::DeviceAction)> knows;
+  std::function<void(drivers::DeviceAction)> request;
+};
+
 struct Services {
   servo::Mailbox& mailbox;
   std::string version;
@@ -76,6 +84,8 @@ struct Services {
 
   /// In the order of the device set; empty for a device that no client can move. io thread, never waits.
   std::vector<PlaceDevice> place_device{};
+  /// In the order of the device set; none: the devices are computed, and always there.
+  std::vector<DeviceKeeper> keepers{};
 };
 
 }  // namespace haptic::ipc

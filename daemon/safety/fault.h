@@ -15,15 +15,16 @@ enum class FaultKind : std::uint8_t {
   kLostDriver,     // value and limit in s of silence; 0: the connection ended
   kOverTravel,     // value: the coordinate in the device's own frame, limit: the side of the box, in m
   kEnergy,         // value and limit in J
+  kLostDevice,     // value and limit are 0
   kEmergencyStop,  // value and limit are 0
   kStillSample,    // value and limit in s
 };
 
 /// In lower case, e.g. "over_speed"; "none" for no fault.
 constexpr const char* name_of(FaultKind kind) noexcept {
-  constexpr const char* kNames[] = {"none",           "not_finite",  "over_speed",  "stale_sample",
-                                    "missed_ticks",   "lost_driver", "over_travel", "energy",
-                                    "emergency_stop", "still_sample"};
+  constexpr const char* kNames[] = {"none",         "not_finite",     "over_speed",  "stale_sample",
+                                    "missed_ticks", "lost_driver",    "over_travel", "energy",
+                                    "lost_device",  "emergency_stop", "still_sample"};
   return kNames[static_cast<int>(kind)];
 }
 

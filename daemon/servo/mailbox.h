@@ -17,6 +17,7 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/device.h"
 #include "engine/carry_map.h"
 #include "engine/constraint.h"
 #include "engine/world.h"
@@ -161,6 +162,8 @@ struct DeviceSnapshot {
   double mean_force = 0.0;       // N, running
   double energy = 0.0;           // J given to the user beyond what was taken, since it was armed
   bool clutched = false;         // its clutch is down
+  drivers::DevicePhase phase = drivers::DevicePhase::kReady;
+  bool armed = false;  // its force is allowed: not so of one that came after arming
 };
 
 /// One tick as the rest of the daemon sees it. The vectors have their capacity from the start and only change

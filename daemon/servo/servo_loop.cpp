@@ -65,7 +65,9 @@ ServoLoop::Channel ServoLoop::make_channel(const ServoSettings& settings, driver
           .guard = safety::ForceGuard(strictest(strictest(settings.limits, own.limits), bears)),
           .workspace = Workspace(own.workspace),
           .filter = MotionFilter(own.filter, settings.rate_hz),
-          .stop_button = own.stop_button};
+          .stop_button = own.stop_button,
+          .stops_alone = own.stops_alone,
+          .state = device.state()};
 }
 
 void ServoLoop::tick(const Instant& now) noexcept {
@@ -75,6 +77,7 @@ void ServoLoop::tick(const Instant& now) noexcept {
   receive_commands(now);
   finish_stage(Stage::kCommands);
   read_devices(now);
+  find_losses(now);
   finish_stage(Stage::kRead);
   place_fingers();
   step_world();
@@ -194,7 +197,7 @@ void ServoLoop::guard_forces(const Instant& now) noexcept {
         .clutched = channel.workspace.is_clutched(),
         .force_share = channel.device->info().exerts_force ? alive : 0.0};
     channel.let_through = channel.guard.guard(input, dt_);
-    if (channel.guard.is_cut()) latch(channel.guard.fault(), now);
+    if (channel.guard.is_cut() && !keeps_its_fault(channel, now)) latch(channel.guard.fault(), now);
   }
   if (!cut_) return;
   // what one device did stops them all, and in this very tick
@@ -286,7 +289,9 @@ void ServoLoop::fill(Snapshot& snapshot, const Instant& now) const noexcept {
                            .acceleration = channel.acceleration,
                            .mean_force = channel.guard.mean_force(),
                            .energy = channel.guard.energy(),
-                           .clutched = channel.workspace.is_clutched()});
+                           .clutched = channel.workspace.is_clutched(),
+                           .phase = channel.state.phase,
+                           .armed = channel.guard.armed()});
   }
 }
 

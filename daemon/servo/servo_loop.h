@@ -31,6 +31,7 @@ struct DeviceSettings {
   WorkspaceSettings workspace{};
   MotionFilterSettings filter{};
   std::optional<std::uint32_t> stop_button{};  // 0 to 31; pressing it is an emergency stop
+  bool stops_alone = false;                    // its loss stops no other
 };
 
 struct ServoSettings {
@@ -76,6 +77,8 @@ class ServoLoop {
     Workspace workspace;
     MotionFilter filter;
     std::optional<std::uint32_t> stop_button{};
+    bool stops_alone = false;  // when it is lost
+    drivers::DeviceState state{};
     drivers::DeviceSample hand{};    // as it was measured, with the velocity of the filter
     drivers::DeviceSample sample{};  // the same in the world
     glm::dvec3 acceleration{0.0};    // m/s^2, world
@@ -83,13 +86,17 @@ class ServoLoop {
     bool fresh = false;              // and it is not too old
     bool was_fresh = false;          // in the tick before
     double sample_age = 0.0;         // s
+    bool has_told_fault = false;     // that is its own alone
     engine::Wrench wanted{};         // by the engine, on the hand, world's axes
     safety::GuardOutput let_through{};
+
+    bool is_ready() const noexcept { return state.phase == drivers::DevicePhase::kReady; }
   };
 
   static Channel make_channel(const ServoSettings& settings, drivers::Device& device, std::size_t index);
   void receive_commands(const Instant& now) noexcept;
   void read_devices(const Instant& now) noexcept;
+  void find_losses(const Instant& now) noexcept;
   void place_fingers() noexcept;
   void step_world() noexcept;
   void guard_forces(const Instant& now) noexcept;
@@ -98,6 +105,9 @@ class ServoLoop {
 
   void obey(const Command& command, const Instant& now) noexcept;
   EventKind arm(WaitingForce& waiting) noexcept;
+  bool find_waiting_force(WaitingForce& waiting) noexcept;
+  bool can_arm_more() const noexcept;
+  bool has_fault() const noexcept;
   EventKind resume(const Instant& now) noexcept;
   EventKind clear_fault() noexcept;
   EventKind latch_gently(safety::Fault fault, const Instant& now) noexcept;
@@ -114,6 +124,7 @@ class ServoLoop {
   void measure(Channel& channel, const Instant& now) noexcept;
   void want_forces() noexcept;
   void latch(const safety::Fault& fault, const Instant& now) noexcept;
+  bool keeps_its_fault(Channel& channel, const Instant& now) noexcept;
   void send(Event event, const Instant& now) noexcept;
 
   void count_misses(const Instant& now) noexcept;

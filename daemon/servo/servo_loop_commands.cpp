@@ -85,20 +85,31 @@ void ServoLoop::obey(const Command& command, const Instant& now) noexcept {
        now);
 }
 
-EventKind ServoLoop::arm(WaitingForce& waiting) noexcept {
-  if (fault_.kind != safety::FaultKind::kNone) return EventKind::kFaultRefused;
-  if (armed_) return EventKind::kNothingToDo;
+/// Whether force waits for a device that would be armed now.
+bool ServoLoop::find_waiting_force(WaitingForce& waiting) noexcept {
   // as the last tick left the world, even if that is paused: what comes when it goes on is told now
   want_forces();
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const double force = safety::length(channels_[i].wanted.force);
-    const double limit = channels_[i].guard.limits().max_arm_force;
-    if (force <= limit || !channels_[i].device->info().exerts_force) continue;
+    const Channel& channel = channels_[i];
+    if (!channel.is_ready() || channel.guard.armed() || !channel.device->info().exerts_force) continue;
+    const double force = safety::length(channel.wanted.force);
+    const double limit = channel.guard.limits().max_arm_force;
+    if (force <= limit) continue;
     waiting = {.device = static_cast<std::uint32_t>(i), .force = force, .limit = limit};
-    return EventKind::kForceWaits;
+    return true;
   }
+  return false;
+}
+
+EventKind ServoLoop::arm(WaitingForce& waiting) noexcept {
+  if (has_fault()) return EventKind::kFaultRefused;
+  if (armed_ && !can_arm_more()) return EventKind::kNothingToDo;
+  if (find_waiting_force(waiting)) return EventKind::kForceWaits;
   armed_ = true;
-  for (Channel& channel : channels_) channel.guard.arm();
+  // one that is plugged in later gets no force until somebody arms again
+  for (Channel& channel : channels_) {
+    if (channel.is_ready()) channel.guard.arm();
+  }
   return EventKind::kDone;
 }
 
@@ -113,10 +124,13 @@ EventKind ServoLoop::resume(const Instant& now) noexcept {
 }
 
 EventKind ServoLoop::clear_fault() noexcept {
-  if (fault_.kind == safety::FaultKind::kNone) return EventKind::kNothingToDo;
+  if (!has_fault()) return EventKind::kNothingToDo;
   fault_ = {};
   cut_ = false;
-  for (Channel& channel : channels_) channel.guard.clear();
+  for (Channel& channel : channels_) {
+    channel.guard.clear();
+    channel.has_told_fault = false;
+  }
   return EventKind::kDone;
 }
 

@@ -53,6 +53,7 @@ servo::DeviceSettings device_settings(const v1::Device& device) {
   }
   if (workspace.has_clutch_button()) settings.workspace.clutch_button = workspace.clutch_button();
   if (device.has_stop_button()) settings.stop_button = device.stop_button();
+  settings.stops_alone = device.on_loss() == v1::Device::STOP_DEVICE;
   return settings;
 }
 

@@ -29,12 +29,15 @@ class ExternalRoutine final : public DeviceRoutine {
  public:
   explicit ExternalRoutine(ExternalSettings settings) : settings_(std::move(settings)) {}
 
-  void open() override {
+  void prepare() override {
     users_ = permitted_users(settings_.users);
     listener_.emplace(settings_.path, !settings_.users.empty());
   }
 
+  void open() override {}
+
   void run(DeviceLink& link, const StopFlag& stop) override {
+    wait_for_program("");
     while (!stop.is_raised()) {
       std::array<pollfd, 2> ready{pollfd{listener_->get(), POLLIN, 0}, pollfd{peer_.get(), POLLIN, 0}};
       // a program that must wait a little stays in the listener's queue
@@ -48,15 +51,14 @@ class ExternalRoutine final : public DeviceRoutine {
     if (peer_) refuse(link, HAPTIC_STOPPED);
   }
 
-  void close() noexcept override {
-    peer_ = Descriptor();
-    listener_.reset();
-  }
+  void close() noexcept override { peer_ = Descriptor(); }
+
+  void release() noexcept override { listener_.reset(); }
 
  private:
   bool is_closed() const noexcept { return !peer_ && rt::monotonic_ns() < open_from_; }
 
-  void admit() noexcept {
+  void admit() {
     Descriptor newcomer = listener_->accept();
     if (!newcomer) return;
     uid_t user = 0;
@@ -69,11 +71,12 @@ class ExternalRoutine final : public DeviceRoutine {
       return;
     }
     peer_ = std::move(newcomer);
+    life().tell(DevicePhase::kOpening, "the program that serves it has sent no sample yet");
     conversation_ = {};
     last_heard_ = rt::monotonic_ns();
   }
 
-  void converse(DeviceLink& link) noexcept {
+  void converse(DeviceLink& link) {
     for (int i = 0; i < kMostAtOnce && peer_; ++i) {
       std::array<std::byte, kLongestMessage> buffer{};
       std::size_t size = 0;
@@ -81,7 +84,7 @@ class ExternalRoutine final : public DeviceRoutine {
         case Reception::kNothing:
           return;
         case Reception::kEnded:
-          forget(link);
+          forget(link, "the program that served it has ended the connection; ");
           return;
         case Reception::kMessage:
           take(link, std::span(buffer).first(std::min(size, buffer.size())));
@@ -89,7 +92,7 @@ class ExternalRoutine final : public DeviceRoutine {
     }
   }
 
-  void take(DeviceLink& link, std::span<const std::byte> message) noexcept {
+  void take(DeviceLink& link, std::span<const std::byte> message) {
     const Nanoseconds now = rt::monotonic_ns();
     const auto read = read_sample(message, now, conversation_);
     if (const haptic_refusal* const refusal = std::get_if<haptic_refusal>(&read)) {
@@ -101,15 +104,28 @@ class ExternalRoutine final : public DeviceRoutine {
     tell(peer_, write_force(link.live_force(now), conversation_.last_sequence, now));
   }
 
-  void refuse(DeviceLink& link, haptic_refusal refusal) noexcept {
+  void refuse(DeviceLink& link, haptic_refusal refusal) {
     tell(peer_, write_refusal(refusal));
-    forget(link);
+    forget(link, refusal == HAPTIC_SILENT    ? "the program that served it fell silent; "
+                 : refusal == HAPTIC_STOPPED ? ""
+                                             : "the program that served it was cut off: it sent what is no "
+                                               "message of this protocol; ");
   }
 
-  void forget(DeviceLink& link) noexcept {
+  void forget(DeviceLink& link, const std::string& why) {
     link.publish_nothing();
     peer_ = Descriptor();
     open_from_ = rt::monotonic_ns() + nanoseconds(kPause);
+    wait_for_program(why);
+  }
+
+  void wait_for_program(const std::string& why) {
+    std::string reason = why + "no program serves it at " + settings_.path;
+    if (life().state().phase == DevicePhase::kReady && !stop_requested()) {
+      life().lose(DevicePhase::kAbsent, std::move(reason));
+    } else {
+      life().tell(DevicePhase::kAbsent, std::move(reason));
+    }
   }
 
   static void tell(const Descriptor& peer, const haptic_force& message) noexcept {

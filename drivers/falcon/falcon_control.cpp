@@ -13,6 +13,7 @@ constexpr Nanoseconds kMillisecond = 1'000'000;
 
 // how long the LED stays green after the last force
 constexpr Nanoseconds kGreenAfterForce = 1'000 * kMillisecond;
+constexpr Nanoseconds kBlink = 200 * kMillisecond;
 
 bool is_in_box(const glm::dvec3& p) noexcept {
   return p.x >= kTrustedLow.x && p.x <= kTrustedHigh.x && p.y >= kTrustedLow.y && p.y <= kTrustedHigh.y &&
@@ -41,7 +42,7 @@ void FalconControl::take(const Reply& reply, Nanoseconds now) noexcept {
   const Nanoseconds elapsed = now - last_reply_;
   ++replies_;
   last_reply_ = now;
-  if (reply.homed != kAllHomed) {
+  if (!is_homed(reply, now)) {
     counted_ = false;
     return distrust(Hold::kNotHomed);
   }
@@ -66,6 +67,19 @@ void FalconControl::take(const Reply& reply, Nanoseconds now) noexcept {
                          .buttons = reply.buttons};
 }
 
+void FalconControl::home(Nanoseconds now) noexcept {
+  homes_again_ = true;
+  homing_asked_ = now;
+  counted_ = false;
+  distrust(Hold::kNotHomed);
+}
+
+bool FalconControl::is_homed(const Reply& reply, Nanoseconds now) noexcept {
+  const bool has_marks = reply.homed == kAllHomed;
+  if (!has_marks || now - homing_asked_ >= kMarksWait) homes_again_ = false;
+  return has_marks && !homes_again_;
+}
+
 void FalconControl::distrust(Hold hold) noexcept {
   hold_ = hold;
   good_replies_ = 0;
@@ -87,7 +101,8 @@ Packet FalconControl::next_packet(const ForceCommand& wanted, Nanoseconds now) n
   share_ = may_push ? std::min(1.0, share_ + step) : 0.0;
 
   const double magnitude = glm::length(wanted.force);
-  Request request{.led = led(magnitude > 0.0, now)};
+  const bool forgets_marks = homes_again_ && now - homing_asked_ < kNoHoming;
+  Request request{.homing = !forgets_marks, .led = led(magnitude > 0.0, now)};
   if (share_ > 0.0 && std::isfinite(magnitude) && magnitude > 0.0) {
     const double scale = share_ * std::min(1.0, settings_.max_force / magnitude);
     const std::optional<glm::dvec3> torques = joint_torques(position_, scale * wanted.force);
@@ -101,6 +116,7 @@ Led FalconControl::led(bool wants_force, Nanoseconds now) noexcept {
     force_seen_ = now;
     force_was_seen_ = true;
   }
+  if (now < identified_until_) return now / kBlink % 2 == 0 ? Led::kGreen : Led::kRed;
   if (!counted_) return Led::kRed;
   return force_was_seen_ && now - force_seen_ < kGreenAfterForce ? Led::kGreen : Led::kBlue;
 }

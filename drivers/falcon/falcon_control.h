@@ -4,10 +4,13 @@
 //
 // It lets force through only while all of this holds, and ramps it in afterwards:
 //   - all three encoders have passed their marks: before, counts start anywhere, and jump when they do;
+//     again after home(), which asks for no homing for a while: whether the firmware forgets its marks then
+//     is not known, so one that still keeps them after kMarksWait is trusted with them again;
 //   - the last reply is younger than `reply_age`;
 //   - counts change no faster than a hand can move the grip;
 //   - the kinematics converge, and the grip is within the box in which they are trusted.
-// Every packet asks for homing. LEDs: red without homing, blue when homed, green while force is wanted.
+// Every other packet asks for homing. LEDs: red without homing, blue when homed, green while force is wanted,
+// green and red in turn while it shows which one it is.
 //
 // Real-time safe. For the driver's thread alone.
 
@@ -47,6 +50,11 @@ inline constexpr glm::dvec3 kTrustedHigh{0.06, 0.06, 0.18};
 inline constexpr int kSettlingReplies = 50;
 /// The fastest change of a count that is believed, per millisecond: about 2 m/s.
 inline constexpr int kMostCountsPerMillisecond = 60;
+/// How long home() asks for no homing, and how long the firmware may take to forget its marks.
+inline constexpr Nanoseconds kNoHoming = 200'000'000;
+inline constexpr Nanoseconds kMarksWait = 1'000'000'000;
+/// How long identify() lasts.
+inline constexpr Nanoseconds kIdentifying = 3'000'000'000;
 
 class FalconControl {
  public:
@@ -57,6 +65,12 @@ class FalconControl {
 
   /// The packet to send at `now`. `wanted` is alive: zero force if no command is.
   Packet next_packet(const ForceCommand& wanted, Nanoseconds now) noexcept;
+
+  /// Shows which one it is, from `now` on.
+  void identify(Nanoseconds now) noexcept { identified_until_ = now + kIdentifying; }
+
+  /// Its position does not count until it has been homed again.
+  void home(Nanoseconds now) noexcept;
 
   /// What the last reply told, in the device's frame; nothing unless its position is trusted. A grip outside
   /// the box has one.
@@ -71,6 +85,7 @@ class FalconControl {
  private:
   void take(const Reply& reply, Nanoseconds now) noexcept;
   void distrust(Hold hold) noexcept;
+  bool is_homed(const Reply& reply, Nanoseconds now) noexcept;
   Led led(bool wants_force, Nanoseconds now) noexcept;
 
   ControlSettings settings_;
@@ -87,6 +102,9 @@ class FalconControl {
 
   Nanoseconds last_packet_ = 0;
   double share_ = 0.0;  // of the force, 0 to 1
+  Nanoseconds identified_until_ = 0;
+  bool homes_again_ = false;  // its marks do not count until it has forgotten them
+  Nanoseconds homing_asked_ = 0;
   Nanoseconds force_seen_ = 0;
   bool force_was_seen_ = false;
 };

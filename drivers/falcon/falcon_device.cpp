@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <utility>
 
 #include "drivers/device_error.h"
 #include "drivers/io/usb/usb.h"
+#include "drivers/io/usb/usb_monitor.h"
 #include "rt/tick_clock.h"
 
 namespace haptic::drivers::falcon {
@@ -23,6 +25,9 @@ constexpr double kRateHz = 1000.0;
 constexpr std::size_t kReads = 2;
 constexpr std::size_t kWrites = 3;
 
+// without a reply for so long it has lost its power, and its firmware with it
+constexpr Nanoseconds kLongestSilence = 1'000'000'000;
+
 constexpr std::chrono::milliseconds kSendTimeout{1000};
 constexpr int kLastPackets = 8;
 constexpr Nanoseconds kLastPacketsWait = 100'000'000;
@@ -30,17 +35,23 @@ constexpr std::chrono::milliseconds kLastPacketTimeout{20};
 
 class UsbFtdiPort final : public FtdiPort {
  public:
-  explicit UsbFtdiPort(io::UsbDevice& usb) : usb_(usb) {}
+  /// `go_on` throws when bringing the device up shall end.
+  UsbFtdiPort(io::UsbDevice& usb, std::function<void()> go_on) : usb_(usb), go_on_(std::move(go_on)) {}
 
-  void control(const FtdiRequest& request) override { usb_.control_out(request.request, request.value, 0); }
+  void control(const FtdiRequest& request) override {
+    go_on_();
+    usb_.control_out(request.request, request.value, 0);
+  }
 
   void write(std::span<const std::uint8_t> bytes) override {
+    go_on_();
     usb_.bulk_out(kEndpointOut, bytes, kSendTimeout);
   }
 
   std::size_t read(std::span<std::uint8_t> bytes, std::chrono::milliseconds timeout) override {
     const Nanoseconds give_up = rt::monotonic_ns() + std::chrono::nanoseconds(timeout).count();
     while (waiting_.empty()) {
+      go_on_();
       const Nanoseconds left = give_up - rt::monotonic_ns();
       if (left <= 0) return 0;
       std::array<std::uint8_t, kUsbPacketBytes> packet{};
@@ -59,6 +70,7 @@ class UsbFtdiPort final : public FtdiPort {
 
  private:
   io::UsbDevice& usb_;
+  std::function<void()> go_on_;
   std::vector<std::uint8_t> waiting_;  // read, but not yet asked for
 };
 
@@ -69,11 +81,15 @@ class FalconRoutine final : public DeviceRoutine {
   void open() override {
     const io::UsbMatch match{.vendor = kVendor, .product = kProduct, .serial = settings_.serial};
     usb_.emplace(match);
+    life().tell_serial(usb_->serial());
+    life().tell(DevicePhase::kOpening, "its firmware is started");
     try {
-      UsbFtdiPort port(*usb_);
+      UsbFtdiPort port(*usb_, [this] { go_on(); });
       bring_up(port, settings_.firmware, settings_.boot);
     } catch (const DeviceError&) {
+      const bool was_unplugged = usb_->is_gone();
       usb_.reset();
+      if (was_unplugged) throw DeviceAbsent("it was unplugged while its firmware was started");
       throw;
     }
   }
@@ -85,23 +101,51 @@ class FalconRoutine final : public DeviceRoutine {
         [&](std::span<const std::uint8_t> transfer) { take(control, link, transfer, rt::monotonic_ns()); });
     io::UsbWriter writer(*usb_, kEndpointOut, kPacketBytes, kWrites);
     rt::TickSchedule schedule(rt::monotonic_ns(), kRateHz);
-    while (!stop.is_raised() && !usb_->is_gone()) {
+    Nanoseconds heard = rt::monotonic_ns();
+    bool is_silent = false;
+    while (!stop.is_raised() && !usb_->is_gone() && !is_silent) {
       const Nanoseconds now = rt::monotonic_ns();
+      obey_requests(control, now);
       if (now >= schedule.next_due_ns()) {
         schedule.advance(now);
         // if all buffers are in flight the device lags: the next packet will be newer
         writer.submit(control.next_packet(link.live_force(now), now));
-        if (control.hold(now) == Hold::kNoReply) link.publish_nothing();
+        const Hold hold = control.hold(now);
+        if (hold == Hold::kNotHomed) ask_for_homing(link);
+        if (hold == Hold::kNoReply) {
+          link.publish_nothing();
+          is_silent = now - heard > kLongestSilence;
+        } else {
+          heard = now;
+        }
       }
       usb_->wait(schedule.next_due_ns());
     }
     let_go(writer);
     if (usb_->is_gone()) throw DeviceError("unplugged");
+    if (is_silent) throw DeviceError("it does not answer any more; is its power supply plugged in?");
   }
 
   void close() noexcept override { usb_.reset(); }
 
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_usb(kVendor, kProduct); }
+
+  bool knows(DeviceAction action) const noexcept override {
+    return action == DeviceAction::kIdentify || action == DeviceAction::kHome;
+  }
+
  private:
+  void obey_requests(FalconControl& control, Nanoseconds now) {
+    if (life().take(DeviceAction::kIdentify)) control.identify(now);
+    if (life().take(DeviceAction::kHome)) control.home(now);
+  }
+
+  void ask_for_homing(DeviceLink& link) {
+    if (life().state().phase == DevicePhase::kHoming) return;
+    link.publish_nothing();
+    life().tell(DevicePhase::kHoming, "pull its grip out to the stop and push it in again, once");
+  }
+
   static void take(FalconControl& control, DeviceLink& link, std::span<const std::uint8_t> transfer,
                    Nanoseconds now) {
     const std::uint64_t before = control.replies();

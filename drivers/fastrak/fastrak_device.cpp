@@ -11,6 +11,7 @@
 #include "drivers/device_error.h"
 #include "drivers/fastrak/fastrak_protocol.h"
 #include "drivers/io/serial/serial_port.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "drivers/velocity_estimate.h"
 #include "rt/tick_clock.h"
 
@@ -29,6 +30,7 @@ class FastrakRoutine final : public DeviceRoutine {
   void open() override {
     try {
       port_.emplace(settings_.port, settings_.baud);
+      life().tell(DevicePhase::kOpening, "it is asked who it is");
       send(kSilence);
       std::this_thread::sleep_for(settings_.settle);
       port_->drain(settings_.command);
@@ -62,6 +64,9 @@ class FastrakRoutine final : public DeviceRoutine {
       }
       if (now - last <= longest) continue;
       link.publish_nothing();
+      if (life().state().phase == DevicePhase::kReady) {
+        life().lose(DevicePhase::kOpening, "it fell silent, and is asked to send again; is it switched on?");
+      }
       start_records();  // it may have been switched off and on
       last = rt::monotonic_ns();
     }
@@ -76,6 +81,8 @@ class FastrakRoutine final : public DeviceRoutine {
     port_.reset();
   }
 
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_udev("tty"); }
+
  private:
   void send(std::string_view command) {
     port_->write({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()});
@@ -86,6 +93,7 @@ class FastrakRoutine final : public DeviceRoutine {
     std::vector<std::uint8_t> answer;
     std::array<std::uint8_t, 64> bytes{};
     while (!is_status(answer)) {
+      go_on();
       const std::size_t count = port_->read_some(bytes, kStatusWait);
       answer.insert(answer.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
       constexpr std::size_t kMost = 1024;

@@ -10,6 +10,7 @@
 
 #include "drivers/device_error.h"
 #include "drivers/io/serial/serial_port.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "drivers/velocity_estimate.h"
 #include "rt/tick_clock.h"
 
@@ -21,6 +22,7 @@ constexpr unsigned kBaud = 115200;  // of no effect on its USB port
 constexpr std::chrono::milliseconds kQuiet{5};
 constexpr int kFirstTries = 20;
 constexpr int kLastMessages = 5;
+constexpr Nanoseconds kLongestSilence = 1'000'000'000;
 constexpr Nanoseconds kPeriod = 1'000'000;
 constexpr double kVelocityLag = 0.004;  // s
 
@@ -35,6 +37,7 @@ class HaplyRoutine final : public DeviceRoutine {
       port_->drain(kQuiet);
       port_->write(setup_message(settings_.wiring));
       for (int i = 0; i < kFirstTries; ++i) {
+        go_on();
         if (exchange({})) return;
       }
       throw DeviceError(settings_.port + ": no Haply board answers");
@@ -48,9 +51,13 @@ class HaplyRoutine final : public DeviceRoutine {
     VelocityEstimate velocity(kVelocityLag);
     std::array<double, 2> torques{};
     Nanoseconds due = rt::monotonic_ns();
-    while (!stop.is_raised()) {
+    Nanoseconds heard = due;
+    bool is_silent = false;
+    while (!stop.is_raised() && !is_silent) {
       const std::optional<std::array<double, 2>> angles = exchange(torques);
       const Nanoseconds now = rt::monotonic_ns();
+      if (angles) heard = now;
+      is_silent = now - heard > kLongestSilence;
       const auto handle = angles ? handle_position(settings_.geometry, *angles) : std::nullopt;
       if (handle) {
         const glm::dvec3 position(*handle, 0.0);
@@ -66,9 +73,12 @@ class HaplyRoutine final : public DeviceRoutine {
           angles ? torques_for(link.live_force(rt::monotonic_ns()).force, *angles) : std::array<double, 2>{};
     }
     for (int i = 0; i < kLastMessages; ++i) (void)exchange({});
+    if (is_silent) throw DeviceError(settings_.port + ": the board does not answer any more");
   }
 
   void close() noexcept override { port_.reset(); }
+
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_udev("tty"); }
 
  private:
   /// Sends torques and gives the angles; nothing, and the stream begun anew, if no sound reply came.

@@ -8,6 +8,7 @@
 #include "drivers/device_error.h"
 #include "drivers/hydra/hydra_protocol.h"
 #include "drivers/io/hid/hid.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "drivers/velocity_estimate.h"
 #include "rt/tick_clock.h"
 
@@ -38,7 +39,10 @@ class HydraRoutine final : public DeviceRoutine {
 
   void open() override {
     try {
-      motion_.emplace(interface_of(kMotionInterface));
+      const io::HidInfo found = interface_of(kMotionInterface);
+      motion_.emplace(found);
+      life().tell_serial(found.serial);
+      life().tell(DevicePhase::kOpening, "it is turned from gamepad to motion");
       if (sends_motion(settings_.first_report)) return;
       io::HidDevice control(interface_of(kControlInterface));
       for (int attempt = 0; attempt < settings_.attempts; ++attempt) {
@@ -62,7 +66,7 @@ class HydraRoutine final : public DeviceRoutine {
       const std::size_t length = motion_->read(report, kPatience);
       const Nanoseconds now = rt::monotonic_ns();
       if (length == 0) {
-        if (now - last > kLongestSilence) link.publish_nothing();
+        if (now - last > kLongestSilence) throw DeviceError("it sends no motion any more");
         continue;
       }
       last = now;
@@ -79,10 +83,13 @@ class HydraRoutine final : public DeviceRoutine {
   // the other wand may be in use: the base goes on sending motion
   void close() noexcept override { motion_.reset(); }
 
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_udev("hidraw"); }
+
  private:
   bool sends_motion(std::chrono::milliseconds wait) {
     const Nanoseconds give_up = rt::monotonic_ns() + std::chrono::nanoseconds(wait).count();
     while (rt::monotonic_ns() < give_up) {
+      go_on();
       std::array<std::uint8_t, kReportBytes + 12> report{};
       if (motion_->read(report, kPatience) == kReportBytes) return true;
     }

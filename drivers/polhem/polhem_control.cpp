@@ -34,6 +34,12 @@ void PolhemControl::take(const Reading& reading, Nanoseconds now) noexcept {
   sample_ = DeviceSample{.time = now, .position = position, .velocity = velocity_.take(now, position)};
 }
 
+void PolhemControl::calibrate() noexcept {
+  if (!settings_.presets_itself) return;
+  calibration_ = Calibration::kPresetting;
+  sample_.reset();
+}
+
 Message PolhemControl::answer(const ForceCommand& wanted) const noexcept {
   if (calibration_ == Calibration::kPresetting) return preset_message(settings_.rest_counts);
   const double magnitude = glm::length(wanted.force);

@@ -28,6 +28,9 @@ class PolhemControl {
   /// What the arm tells at `now`.
   void take(const Reading& reading, Nanoseconds now) noexcept;
 
+  /// The arm is in its rest pose now, as its button tells, too.
+  void calibrate() noexcept;
+
   /// The answer to it: `wanted` is alive, or zero.
   Message answer(const ForceCommand& wanted) const noexcept;
 

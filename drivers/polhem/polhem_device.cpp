@@ -8,6 +8,7 @@
 
 #include "drivers/device_error.h"
 #include "drivers/io/hid/hid.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "drivers/io/udp/udp_socket.h"
 #include "rt/tick_clock.h"
 
@@ -29,14 +30,21 @@ void publish(const PolhemControl& control, DeviceLink& link) noexcept {
   }
 }
 
+void fall_silent(DeviceLink& link, DeviceLife& life, DevicePhase phase) {
+  link.publish_nothing();
+  if (life.state().phase == DevicePhase::kReady) life.lose(phase, "it fell silent");
+}
+
 class UsbRoutine final : public DeviceRoutine {
  public:
   explicit UsbRoutine(PolhemSettings settings) : settings_(std::move(settings)) {}
 
   void open() override {
-    hid_.emplace(io::find_hid("WoodenHaptics arm", [&](const io::HidInfo& info) {
+    const io::HidInfo found = io::find_hid("WoodenHaptics arm", [&](const io::HidInfo& info) {
       return info.vendor == settings_.vendor && info.product == settings_.product;
-    }));
+    });
+    hid_.emplace(found);
+    life().tell_serial(found.serial);
   }
 
   void run(DeviceLink& link, const StopFlag& stop) override {
@@ -45,14 +53,16 @@ class UsbRoutine final : public DeviceRoutine {
     while (!stop.is_raised()) {
       const std::optional<Reading> reading = newest();
       const Nanoseconds now = rt::monotonic_ns();
+      if (life().take(DeviceAction::kCalibrate)) control.calibrate();
       if (!reading) {
-        if (now - last > kLongestSilence) link.publish_nothing();
+        if (now - last > kLongestSilence) fall_silent(link, life(), DevicePhase::kOpening);
         send(currents_message({}));
         continue;
       }
       last = now;
       control.take(*reading, now);
       publish(control, link);
+      note_calibration(control);
       send(control.answer(link.live_force(now)));
     }
     for (int i = 0; i < kLastMessages; ++i) send(currents_message({}));
@@ -60,7 +70,22 @@ class UsbRoutine final : public DeviceRoutine {
 
   void close() noexcept override { hid_.reset(); }
 
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_udev("hidraw"); }
+
+  bool knows(DeviceAction action) const noexcept override { return action == DeviceAction::kCalibrate; }
+
  private:
+  void note_calibration(const PolhemControl& control) {
+    if (control.sample()) {
+      // it is in its rest pose when the daemon starts; when it is plugged in again a hand may hold it
+      // anywhere
+      settings_.control.calibrate_at_start = false;
+    } else if (life().state().phase != DevicePhase::kHoming) {
+      life().tell(DevicePhase::kHoming,
+                  "put it into its rest pose, then press its button or run `hapticctl devices calibrate`");
+    }
+  }
+
   /// The newest of the reports that are there; nothing if none comes.
   std::optional<Reading> newest() {
     std::optional<Reading> reading;
@@ -94,11 +119,15 @@ class UdpRoutine final : public DeviceRoutine {
     settings_.control.presets_itself = false;
   }
 
-  void open() override { socket_.emplace(settings_.udp_port); }
+  void prepare() override { socket_.emplace(settings_.udp_port); }
+
+  void open() override {}
 
   void run(DeviceLink& link, const StopFlag& stop) override {
     PolhemControl control(settings_.control);
     Nanoseconds last = rt::monotonic_ns();
+    life().tell(DevicePhase::kAbsent,
+                "nothing is heard from it on UDP port " + std::to_string(settings_.udp_port));
     while (!stop.is_raised()) {
       std::array<std::uint8_t, 2 * kDatagramBytes> datagram{};
       const std::size_t length = socket_->receive(datagram, kPatience);
@@ -109,12 +138,14 @@ class UdpRoutine final : public DeviceRoutine {
         control.take(*reading, now);
         publish(control, link);
       } else if (now - last > kLongestSilence) {
-        link.publish_nothing();
+        fall_silent(link, life(), DevicePhase::kAbsent);
       }
     }
   }
 
-  void close() noexcept override { socket_.reset(); }
+  void close() noexcept override {}
+
+  void release() noexcept override { socket_.reset(); }
 
  private:
   PolhemSettings settings_;

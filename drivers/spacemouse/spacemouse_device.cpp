@@ -8,6 +8,7 @@
 
 #include "drivers/device_error.h"
 #include "drivers/io/hid/hid.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "rt/tick_clock.h"
 
 namespace haptic::drivers::spacemouse {
@@ -16,6 +17,9 @@ namespace {
 
 // the pose moves on between reports too, which come every 8 or 16 ms
 constexpr std::chrono::milliseconds kStep{4};
+
+constexpr Nanoseconds kIdentifying = 3'000'000'000;
+constexpr Nanoseconds kBlink = 250'000'000;
 
 constexpr std::uint16_t kGenericDesktop = 1;
 constexpr std::uint16_t kMultiAxisController = 8;
@@ -31,20 +35,28 @@ class SpacemouseRoutine final : public DeviceRoutine {
 
   void open() override {
     const std::string& serial = settings_.serial;
-    hid_.emplace(io::find_hid("SpaceMouse" + (serial.empty() ? serial : " with serial " + serial),
-                              [&](const io::HidInfo& info) {
-                                return is_spacemouse(info) && (serial.empty() || info.serial == serial);
-                              }));
+    const io::HidInfo found = io::find_hid(
+        "SpaceMouse" + (serial.empty() ? serial : " with serial " + serial), [&](const io::HidInfo& info) {
+          return is_spacemouse(info) && (serial.empty() || info.serial == serial);
+        });
+    hid_.emplace(found);
+    life().tell_serial(found.serial);
     light(true);
   }
 
   void run(DeviceLink& link, const StopFlag& stop) override {
     Decoder decoder;
     Motion motion(settings_.motion);
+    Nanoseconds identified_until = 0;
+    bool is_lit = true;
     while (!stop.is_raised()) {
       std::array<std::uint8_t, 64> report{};
       const std::size_t length = hid_->read(report, kStep);
       const Nanoseconds now = rt::monotonic_ns();
+      if (life().take(DeviceAction::kIdentify)) identified_until = now + kIdentifying;
+      const bool shall_light = now >= identified_until || now / kBlink % 2 == 0;
+      if (shall_light != is_lit) light(shall_light);
+      is_lit = shall_light;
       if (decoder.take(std::span(report).first(length)) != Report::kUnknown) motion.take(decoder, now);
       if (const std::optional<DeviceSample> sample = motion.advance(now)) {
         link.publish(*sample);
@@ -58,6 +70,10 @@ class SpacemouseRoutine final : public DeviceRoutine {
     light(false);
     hid_.reset();
   }
+
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_udev("hidraw"); }
+
+  bool knows(DeviceAction action) const noexcept override { return action == DeviceAction::kIdentify; }
 
  private:
   void light(bool on) noexcept {

@@ -83,20 +83,31 @@ ROOMS = {
         libraries=("glm/", "fmt/", "posix"),
     ),
     # the ways to devices, which know no device
+    "drivers/io": Room(ours=("drivers/device_error.h",)),
     "drivers/io/hid": Room(
-        ours=("drivers/device.h", "drivers/device_error.h", "daemon/rt"),
+        ours=("drivers/device.h", "drivers/device_error.h", "drivers/io/same_kind.h", "daemon/rt"),
         libraries=("hidapi/", "posix"),
     ),
     "drivers/io/serial": Room(
         ours=("drivers/device_error.h",),
         libraries=("boost/asio", "boost/system/", "posix"),
     ),
+    "drivers/io/udev": Room(
+        ours=("drivers/device_error.h", "drivers/plug_monitor.h"),
+        libraries=("libudev.h",),
+    ),
     "drivers/io/udp": Room(
         ours=("drivers/device_error.h",),
         libraries=("boost/asio", "boost/system/"),
     ),
     "drivers/io/usb": Room(
-        ours=("drivers/device.h", "drivers/device_error.h", "daemon/rt"),
+        ours=(
+            "drivers/device.h",
+            "drivers/device_error.h",
+            "drivers/io/same_kind.h",
+            "drivers/plug_monitor.h",
+            "daemon/rt",
+        ),
         libraries=("libusb-1.0/", "posix"),
     ),
     "drivers/registry": Room(ours=("drivers", "schema"), libraries=("glm/", "fmt/")),

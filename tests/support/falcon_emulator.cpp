@@ -112,6 +112,7 @@ void FalconEmulator::obey() {
     motors_[motor] = signed_word(std::span(packet_).subspan(1 + 4 * motor, 4));
   }
   flags_ = static_cast<unsigned>(packet_[13] - 'A');
+  if ((flags_ & 1U) == 0 && !troubles.keeps_marks) homed_ = 0;
   if (!troubles.silent) answer();
 }
 

@@ -24,6 +24,7 @@ class FalconEmulator {
     bool leading_zero = false;  // a zero byte before the answer to the handshake
     bool silent = false;        // answers no packet
     std::size_t garbage = 0;    // bytes before each reply
+    bool keeps_marks = false;   // a packet that asks for no homing does not make it forget them
   };
 
   /// Only these bytes make it run; empty: it runs already.
@@ -57,6 +58,7 @@ class FalconEmulator {
 
   Stage stage() const { return stage_; }
   const std::array<int, 3>& motors() const { return motors_; }
+  unsigned homed() const { return homed_; }
   unsigned flags() const { return flags_; }  // bit 0 homing, 1 green, 2 blue, 3 red
   std::size_t packets() const { return packets_; }
   std::size_t broken_bytes() const { return broken_; }  // that belong to no packet

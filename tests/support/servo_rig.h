@@ -23,6 +23,7 @@ class HandDevice final : public drivers::Device {
   const drivers::DeviceInfo& info() const noexcept override { return info_; }
   void start() override {}
   void stop() noexcept override {}
+  drivers::DeviceState state() const noexcept override { return life; }
   bool read(drivers::Nanoseconds now, drivers::DeviceSample& out) noexcept override {
     if (!connected) return false;
     if (fresh) sample.time = now;
@@ -36,6 +37,7 @@ class HandDevice final : public drivers::Device {
 
   bool connected = true;
   bool fresh = true;  // each read() measures anew
+  drivers::DeviceState life;
   drivers::DeviceSample sample;
   drivers::Nanoseconds written_at = -1;
   drivers::ForceCommand written;

@@ -118,6 +118,7 @@ std::vector<std::uint8_t> descriptors(const UsbIdentity& identity) {
 
 /// One transfer that the host wants: the memory of its process, as umockdev shows it.
 struct Urb {
+  UMockdevIoctlClient* client;  // whose opening of the node it came through: two may be open at once
   UMockdevIoctlData* block;
   UMockdevIoctlData* buffer;
   Clock::time_point since;
@@ -256,7 +257,7 @@ void UsbMock::Impl::submit(UMockdevIoctlClient* client) {
   const auto length = static_cast<gsize>(request->buffer_length);
   UMockdevIoctlData* const buffer =
       umockdev_ioctl_data_resolve(block, offsetof(usbdevfs_urb, buffer), std::max<gsize>(length, 1), nullptr);
-  Urb urb{.block = block, .buffer = buffer, .since = Clock::now()};
+  Urb urb{.client = client, .block = block, .buffer = buffer, .since = Clock::now()};
   if (request->type == USBDEVFS_URB_TYPE_CONTROL) {
     control_request(urb);
   } else if ((request->endpoint & kFromDevice) != 0) {
@@ -307,11 +308,13 @@ void UsbMock::Impl::finish(Urb urb, int status, std::size_t length) {
 }
 
 void UsbMock::Impl::reap(UMockdevIoctlClient* client) {
-  if (done.empty()) {
+  const auto found =
+      std::find_if(done.begin(), done.end(), [&](const Urb& urb) { return urb.client == client; });
+  if (found == done.end()) {
     return umockdev_ioctl_client_complete(client, -1, gone ? ENODEV : EAGAIN);
   }
-  const Urb urb = done.front();
-  done.pop_front();
+  const Urb urb = *found;
+  done.erase(found);
   UMockdevIoctlData* const box =
       umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(void*), nullptr);
   umockdev_ioctl_data_set_ptr(box, 0, urb.block);
@@ -325,8 +328,9 @@ void UsbMock::Impl::reap(UMockdevIoctlClient* client) {
 void UsbMock::Impl::discard(UMockdevIoctlClient* client) {
   gulong address = 0;
   std::memcpy(&address, umockdev_ioctl_client_get_arg(client)->data, sizeof address);
-  const auto found = std::find_if(waiting.begin(), waiting.end(),
-                                  [&](const Urb& urb) { return urb.block->client_addr == address; });
+  const auto found = std::find_if(waiting.begin(), waiting.end(), [&](const Urb& urb) {
+    return urb.client == client && urb.block->client_addr == address;
+  });
   if (found == waiting.end()) return umockdev_ioctl_client_complete(client, -1, EINVAL);
   const Urb urb = *found;
   waiting.erase(found);

@@ -19,7 +19,8 @@ from haptic import edits, v1
 from haptic.address import Address, Identity
 from haptic.connection import Connection, Events, connect
 from haptic.drive import DriveLease
-from haptic.enums import Delivery, EventKind, FaultKind, LimitKind, Role, State, Topic
+from haptic.enums import (
+    Delivery, DeviceAction, DevicePhase, EventKind, FaultKind, LimitKind, Role, State, Topic)
 from haptic.errors import (
     Busy,
     Error,
@@ -44,6 +45,8 @@ __all__ = [
     "Connection",
     "Contacts",
     "Delivery",
+    "DeviceAction",
+    "DevicePhase",
     "Devices",
     "DriveLease",
     "Error",

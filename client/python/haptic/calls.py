@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 from haptic import v1
+from haptic.enums import DeviceAction
 
 _SCENE_TIMEOUT = 120.0  # s; a large mesh takes its time
 _SLOWEST_RATE = 100.0  # Hz
@@ -31,7 +32,7 @@ class Calls(ABC):
         return (await self.call(v1.Request(get_status=v1.GetStatus()))).status
 
     async def devices(self) -> list[v1.DeviceStatus]:
-        """In the order of the config."""
+        """In the order of the config: where each is, its phase (haptic.DevicePhase), and the reason if it is not ready."""
         return list((await self.call(v1.Request(list_devices=v1.ListDevices()))).devices.device)
 
     async def scene(self) -> v1.SceneDescription:
@@ -112,6 +113,16 @@ class Calls(ABC):
             vx, vy, vz = velocity
             move.velocity.CopyFrom(v1.Vector3(x=vx, y=vy, z=vz))
         return (await self.call(v1.Request(move_device=move))).device_force
+
+    # --- the life of a device: role DRIVE --------------------------------------------------------------------------
+
+    async def manage_device(self, device: str, action: DeviceAction) -> None:
+        """Asks a device to show which one it is, to be homed or calibrated again, or to be opened again.
+
+        Raises Refused while it is armed or another client drives, Unsupported if its driver does not know the action,
+        Error if it is not open.
+        """
+        await self.call(v1.Request(manage_device=v1.ManageDevice(device=device, action=int(action))))
 
     # --- forces: role DRIVE; faults: role ADMIN --------------------------------------------------------------------
 

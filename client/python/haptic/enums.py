@@ -44,6 +44,27 @@ class State(IntEnum):
     OUT = v1.OUT
 
 
+class DevicePhase(IntEnum):
+    """Where a device stands in its life."""
+
+    ABSENT = v1.DEVICE_ABSENT
+    FOUND = v1.DEVICE_FOUND
+    OPENING = v1.DEVICE_OPENING
+    HOMING = v1.DEVICE_HOMING
+    READY = v1.DEVICE_READY
+    ARMED = v1.DEVICE_ARMED
+    FAULT = v1.DEVICE_FAULT
+
+
+class DeviceAction(IntEnum):
+    """What a person does to one device while it is disarmed."""
+
+    IDENTIFY = v1.ManageDevice.IDENTIFY
+    HOME = v1.ManageDevice.HOME
+    CALIBRATE = v1.ManageDevice.CALIBRATE
+    REOPEN = v1.ManageDevice.REOPEN
+
+
 class FaultKind(IntEnum):
     """Why forces are zero until a person clears it."""
 
@@ -83,3 +104,4 @@ class EventKind(IntEnum):
     FAULT_CLEARED = v1.Event.FAULT_CLEARED
     SCENE_CHANGED = v1.Event.SCENE_CHANGED
     TICKS_MISSED = v1.Event.TICKS_MISSED
+    DEVICE_CHANGED = v1.Event.DEVICE_CHANGED

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from haptic import v1
-from haptic.enums import FaultKind, State
+from haptic.enums import DevicePhase, FaultKind, State
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.uint32]
@@ -77,6 +77,7 @@ class Devices:
     acceleration: Floats  # (n, 3) m/s^2; zero from a daemon that does not tell it, as all that follow
     limits: Indices  # (n,) bit k: haptic.LimitKind k acts
     energy: Floats  # (n,) given to the user beyond what was taken, since it was armed, J
+    phase: Small  # (n,) haptic.DevicePhase; 0 of a daemon that does not tell it
 
 
 @dataclass(frozen=True)
@@ -199,10 +200,11 @@ def _devices(frame: v1.DevicesFrame) -> Devices:
     columns["buttons"] = _array(frame.buttons, np.uint32)
     columns["present"] = _array(frame.present, np.bool_)
     columns["fault"] = _enumerators(frame.fault, max(FaultKind))
-    rows = len(columns["present"])
+    rows = len(columns["present"])  # what follows is not told by older daemons
     columns["acceleration"] = _columns("acceleration", frame.acceleration or np.zeros(3 * rows), 3)
     columns["limits"] = _array(frame.limits or np.zeros(rows), np.uint32)
     columns["energy"] = _array(frame.energy or np.zeros(rows), np.float64)
+    columns["phase"] = _enumerators(frame.phase or [0] * rows, max(DevicePhase))
     _check_rows("devices", **columns)
     return Devices(**columns)
 

@@ -7,7 +7,8 @@ PROTOCOL_MINOR = 0
 
 # what Hello.feature can name
 FEATURES = (
-    "subscribe.filter", "subscribe.delivery", "subscribe.events", "replay", "device.move", "emergency_stop")
+    "subscribe.filter", "subscribe.delivery", "subscribe.events", "replay", "device.move", "device.manage",
+    "emergency_stop")
 
 # bytes; the largest message that a client accepts
 REPLY_LIMIT = 64 * 1024 * 1024

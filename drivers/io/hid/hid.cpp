@@ -1,10 +1,14 @@
 #include "drivers/io/hid/hid.h"
 
 #include <hidapi/hidapi.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <set>
+#include <vector>
 
 #include "drivers/device_error.h"
+#include "drivers/io/same_kind.h"
 
 namespace haptic::drivers::io {
 
@@ -38,6 +42,7 @@ HidInfo find_hid(const std::string& what, const std::function<bool(const HidInfo
   const std::unique_ptr<hid_device_info, void (*)(hid_device_info*)> list(hid_enumerate(0, 0),
                                                                           &hid_free_enumeration);
   HidInfo found;
+  std::vector<std::string> serials;
   std::set<std::string> paths;  // an interface is listed once for each of its usages
   for (const hid_device_info* entry = list.get(); entry != nullptr; entry = entry->next) {
     HidInfo info{.path = entry->path,
@@ -48,18 +53,20 @@ HidInfo find_hid(const std::string& what, const std::function<bool(const HidInfo
                  .usage = entry->usage,
                  .serial = narrow(entry->serial_number)};
     if (!matches(info)) continue;
-    if (paths.insert(info.path).second) found = info;
+    if (!paths.insert(info.path).second) continue;
+    serials.push_back(info.serial);
+    found = std::move(info);
   }
-  if (paths.empty()) throw DeviceError("no " + what + " is connected");
-  if (paths.size() > 1) {
-    throw DeviceError(std::to_string(paths.size()) + " of " + what +
-                      " are connected: name one by its serial");
-  }
+  if (serials.empty()) throw DeviceAbsent("no " + what + " is connected");
+  if (serials.size() > 1) fail_same_kind(what + " devices", std::move(serials));
   return found;
 }
 
 HidDevice::HidDevice(const HidInfo& info) {
   hid_device* const device = hid_open_path(info.path.c_str());
+  if (device == nullptr && ::access(info.path.c_str(), R_OK | W_OK) != 0 && errno == EACCES) {
+    throw DeviceError("no permission to open " + info.path + ": " + kUdevRemedy);
+  }
   if (device == nullptr) fail(info.path + " cannot be opened", nullptr);
   handle_ = std::make_unique<Handle>(device);
 }

@@ -24,7 +24,8 @@ struct HidInfo {
   std::string serial;
 };
 
-/// The one interface that `matches`; `what` names it in the error if there is none, or more than one.
+/// The one interface that `matches`; `what` names it in the error: DeviceAbsent if there is none, DeviceError
+/// with their serials if there are more.
 HidInfo find_hid(const std::string& what, const std::function<bool(const HidInfo&)>& matches);
 
 class HidDevice {

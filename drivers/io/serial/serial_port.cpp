@@ -46,6 +46,18 @@ SerialPort::SerialPort(const std::string& path, unsigned baud) : port_(std::make
   port_->path = path;
   boost::system::error_code error;
   port_->serial.open(path, error);
+  if (error == boost::system::errc::no_such_file_or_directory ||
+      error == boost::system::errc::no_such_device ||
+      error == boost::system::errc::no_such_device_or_address) {
+    throw DeviceAbsent(path + ": there is no such port; is the device plugged in?");
+  }
+  if (error == boost::system::errc::permission_denied) {
+    throw DeviceError("no permission to open " + path +
+                      ": let the user who runs hapticd join the group dialout");
+  }
+  if (error == boost::system::errc::device_or_resource_busy) {
+    throw DeviceError(path + " is in use by another program");
+  }
   if (error) port_->fail("cannot be opened", error);
   const auto set = [&](const auto& option) {
     port_->serial.set_option(option, error);

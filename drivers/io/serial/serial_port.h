@@ -15,7 +15,7 @@ namespace haptic::drivers::io {
 
 class SerialPort {
  public:
-  /// Opens the port for itself alone.
+  /// Opens the port for itself alone. Throws DeviceAbsent if there is none of this path.
   SerialPort(const std::string& path, unsigned baud);
   ~SerialPort();
 

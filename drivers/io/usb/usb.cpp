@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "drivers/device_error.h"
+#include "drivers/io/same_kind.h"
 #include "rt/tick_clock.h"
 
 namespace haptic::drivers::io {
@@ -64,6 +65,7 @@ bool goes_on(libusb_transfer_status status) {
 struct UsbDevice::Handle {
   libusb_context* context = nullptr;
   libusb_device_handle* device = nullptr;
+  std::string serial;
   bool claimed = false;
   bool gone = false;
   std::vector<pollfd> descriptors;
@@ -108,7 +110,7 @@ void UsbDevice::Handle::open(const UsbMatch& match) {
   const std::unique_ptr<libusb_device*, void (*)(libusb_device**)> owned(
       list, [](libusb_device** devices) { libusb_free_device_list(devices, 1); });
 
-  int matching = 0;
+  std::vector<std::string> serials;  // of those that match
   int refused = 0;
   for (ssize_t i = 0; i < count; ++i) {
     libusb_device_descriptor descriptor{};
@@ -119,22 +121,24 @@ void UsbDevice::Handle::open(const UsbMatch& match) {
       refused = error;
       continue;
     }
-    if (!match.serial.empty() && serial_of(candidate, descriptor) != match.serial) {
+    std::string own = serial_of(candidate, descriptor);
+    if (!match.serial.empty() && own != match.serial) {
       libusb_close(candidate);
       continue;
     }
-    ++matching;
+    serials.push_back(own);
     if (device != nullptr) libusb_close(device);
     device = candidate;
+    serial = std::move(own);
   }
   const std::string id = hex_id(match);
   const std::string wanted = match.serial.empty() ? id : id + " with serial " + match.serial;
-  if (matching > 1) {
-    throw DeviceError(std::to_string(matching) + " USB devices " + wanted +
-                      " are connected: name one by its serial");
+  if (serials.size() > 1) fail_same_kind("USB devices " + wanted, std::move(serials));
+  if (serials.empty() && refused == LIBUSB_ERROR_ACCESS) {
+    throw DeviceError("no permission to open the USB device " + id + ": " + kUdevRemedy);
   }
-  if (matching == 0 && refused != 0) fail("the USB device " + id + " cannot be opened", refused);
-  if (matching == 0) throw DeviceError("no USB device " + wanted + " is connected");
+  if (serials.empty() && refused != 0) fail("the USB device " + id + " cannot be opened", refused);
+  if (serials.empty()) throw DeviceAbsent("no USB device " + wanted + " is connected");
 
   // not supported everywhere, and then there is no kernel driver to detach
   (void)libusb_set_auto_detach_kernel_driver(device, 1);
@@ -160,6 +164,8 @@ UsbDevice::UsbDevice(const UsbMatch& match) : handle_(std::make_unique<Handle>()
 }
 
 UsbDevice::~UsbDevice() = default;
+
+const std::string& UsbDevice::serial() const noexcept { return handle_->serial; }
 
 bool UsbDevice::is_gone() const noexcept { return handle_->gone; }
 

@@ -26,13 +26,16 @@ struct UsbMatch {
 
 class UsbDevice {
  public:
-  /// Opens the one device that matches and claims its interface 0, from a kernel driver if need be. Tells
-  /// whether there is none, more than one, or no permission.
+  /// Opens the one device that matches and claims its interface 0, from a kernel driver if need be. Throws
+  /// DeviceAbsent if there is none, else tells whether there is more than one, or no permission.
   explicit UsbDevice(const UsbMatch& match);
   ~UsbDevice();
 
   UsbDevice(const UsbDevice&) = delete;
   UsbDevice& operator=(const UsbDevice&) = delete;
+
+  /// Empty if it has none.
+  const std::string& serial() const noexcept;
 
   /// A vendor request without data to the device.
   void control_out(std::uint8_t request, std::uint16_t value, std::uint16_t index);

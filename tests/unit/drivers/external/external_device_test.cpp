@@ -110,6 +110,27 @@ TEST_F(External, HasTheSamplesOfTheProgramThatServesIt) {
   EXPECT_LE(sample.time, rt::monotonic_ns());
 }
 
+TEST_F(External, IsAbsentUntilAProgramServesItAndLostWhenThatEnds) {
+  const auto reaches = [&](DevicePhase phase) {
+    return wait_until([&] { return device_->state().phase == phase; });
+  };
+  EXPECT_TRUE(wait_until([&] { return device_->words().reason == "no program serves it at " + path_; }));
+  EXPECT_EQ(device_->state().phase, DevicePhase::kAbsent);
+  {
+    Program program(path_);
+    EXPECT_TRUE(reaches(DevicePhase::kOpening)) << "it has sent no sample yet";
+    ASSERT_EQ(program.exchange(0.0), 0);
+    EXPECT_TRUE(reaches(DevicePhase::kReady));
+    EXPECT_EQ(device_->words().reason, "");
+  }
+  EXPECT_TRUE(reaches(DevicePhase::kAbsent));
+  EXPECT_TRUE(wait_until([&] {
+    return device_->words().reason.find("has ended the connection; no program serves it") !=
+           std::string::npos;
+  }));
+  EXPECT_EQ(device_->state().losses, 1U);
+}
+
 TEST_F(External, AnswersEachSampleWithTheForceThatIsAlive) {
   Program program(path_);
   ASSERT_EQ(program.exchange(0.0), 0);

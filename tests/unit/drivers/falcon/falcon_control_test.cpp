@@ -62,6 +62,57 @@ TEST(FalconControl, ItsLedIsRedThenBlueThenGreenWhileForceIsWanted) {
   EXPECT_EQ(rig.emulator.flags(), kBlue);
 }
 
+TEST(FalconControl, ShowsWhichOneItIsByGreenAndRedInTurnForThreeSeconds) {
+  FalconRig rig;
+  rig.settle_at(kCentre);
+  rig.run(1100, {});
+  rig.control.identify(rig.now);
+  int green = 0;
+  int red = 0;
+  for (int i = 0; i < 2990; ++i) {
+    rig.run(1, {});
+    green += rig.emulator.flags() == kGreen ? 1 : 0;
+    red += rig.emulator.flags() == kRed ? 1 : 0;
+  }
+  EXPECT_EQ(green + red, 2990);
+  EXPECT_GT(green, 1300);
+  EXPECT_GT(red, 1300);
+  rig.run(20, {});
+  EXPECT_EQ(rig.emulator.flags(), kBlue);
+}
+
+TEST(FalconControl, HomedAgainItAsksForNoHomingUntilTheMarksAreForgottenAndTrustsNoPositionBeforeNewOnes) {
+  FalconRig rig;
+  rig.settle_at(kCentre);
+  rig.control.home(rig.now);
+  EXPECT_FALSE(rig.control.sample());
+  rig.run(2, kPush);
+  EXPECT_EQ(rig.emulator.homed(), 0U);
+  for (int i = 0; i < 2000; ++i) {
+    rig.run(1, kPush);
+    ASSERT_EQ(rig.control.hold(rig.now), Hold::kNotHomed);
+    ASSERT_TRUE(rig.motors_rest());
+    ASSERT_EQ(rig.emulator.flags(), kRed) << "it asks for homing again";
+  }
+  rig.settle_at(kCentre);
+  EXPECT_TRUE(rig.control.sample());
+}
+
+TEST(FalconControl, AFirmwareThatKeepsItsMarksIsTrustedWithThemAgainAfterASecond) {
+  FalconRig rig;
+  rig.emulator.troubles.keeps_marks = true;
+  rig.settle_at(kCentre);
+  rig.control.home(rig.now);
+  for (int i = 0; i < 990; ++i) {
+    rig.run(1, kPush);
+    ASSERT_EQ(rig.control.hold(rig.now), Hold::kNotHomed);
+    ASSERT_TRUE(rig.motors_rest());
+    ASSERT_EQ(rig.emulator.flags() & 1U, i < 199 ? 0U : 1U) << i;
+  }
+  rig.run(20 + kSettlingReplies, {});
+  EXPECT_TRUE(rig.control.sample());
+}
+
 TEST(FalconControl, TheHandGetsTheForceThatIsWanted) {
   FalconRig rig;
   rig.settle_at({0.01, -0.02, 0.12});

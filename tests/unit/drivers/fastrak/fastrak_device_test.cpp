@@ -3,15 +3,16 @@
 #include "drivers/fastrak/fastrak_device.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <glm/geometric.hpp>
 #include <string>
 #include <thread>
 
-#include "drivers/device_error.h"
-#include "tests/support/eventually.h"
+#include "tests/support/device_life.h"
 #include "tests/support/serial_mock.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/drivers/fastrak/fastrak_records.h"
 
 namespace haptic::drivers::fastrak {
@@ -83,12 +84,8 @@ FastrakSettings settings(const std::string& port) {
 }
 
 std::string error_of(Device& device) {
-  try {
-    device.start();
-  } catch (const DeviceError& error) {
-    return error.what();
-  }
-  return "";
+  device.start();
+  return test::why_not_open(device);
 }
 
 TEST(FastrakDevice, TellsWhereItsStationIsAndNotAnother) {
@@ -112,6 +109,7 @@ TEST(FastrakDevice, StartsATrackerAgainThatFellSilent) {
   ASSERT_TRUE(eventually([&] { return device->read(0, sample); }));
   tracker.sends = false;
   EXPECT_TRUE(eventually([&] { return tracker.starts >= 2; }));
+  EXPECT_EQ(device->state().losses, 1U);
   EXPECT_TRUE(eventually([&] { return device->read(0, sample); }));
 }
 
@@ -133,10 +131,10 @@ TEST(FastrakDevice, OneThatDoesNotAnswerIsToldWithItsPortAndRate) {
   EmulatedTracker tracker(port);
   tracker.deaf = true;
   const std::unique_ptr<Device> device = make_fastrak(settings(port.path()));
-  EXPECT_EQ(error_of(*device),
-            "device \"head\": " + port.path() + ": nothing answers; is its rate 115200 baud?");
+  EXPECT_EQ(error_of(*device), port.path() + ": nothing answers; is its rate 115200 baud?");
   const std::unique_ptr<Device> nowhere = make_fastrak(settings("/dev/does-not-exist"));
-  EXPECT_NE(error_of(*nowhere).find("/dev/does-not-exist: cannot be opened"), std::string::npos);
+  EXPECT_EQ(error_of(*nowhere), "/dev/does-not-exist: there is no such port; is the device plugged in?");
+  EXPECT_EQ(nowhere->state().phase, DevicePhase::kAbsent);
 }
 
 TEST(FastrakDevice, UnpluggingItEndsItsSamplesAndStopStillReturns) {
@@ -153,6 +151,28 @@ TEST(FastrakDevice, UnpluggingItEndsItsSamplesAndStopStillReturns) {
   DeviceSample sample;
   EXPECT_TRUE(eventually([&] { return !device->read(0, sample); }));
   device->stop();
+}
+
+// as udev does, a name leads to whichever port it got
+TEST(FastrakDevice, ComesWhenItsPortIsPluggedInAndAgainEachTime) {
+  const test::TemporaryFolder folder;
+  const std::string name = folder.file("tty");
+  const std::unique_ptr<Device> device = make_fastrak(settings(name));
+  EXPECT_NE(error_of(*device).find("there is no such port"), std::string::npos);
+  DeviceSample sample;
+  for (std::uint32_t round = 1; round <= 2; ++round) {
+    test::SerialMock port;
+    {
+      EmulatedTracker tracker(port);
+      ASSERT_EQ(::symlink(port.path().c_str(), name.c_str()), 0);
+      ASSERT_TRUE(test::reaches(*device, DevicePhase::kReady));
+      EXPECT_TRUE(device->read(0, sample));
+    }
+    ASSERT_EQ(::unlink(name.c_str()), 0);
+    port.unplug();
+    ASSERT_TRUE(eventually([&] { return device->state().losses == round; }));
+    ASSERT_TRUE(test::reaches(*device, DevicePhase::kAbsent));
+  }
 }
 
 }  // namespace

@@ -8,9 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "drivers/device_error.h"
 #include "rt/tick_clock.h"
-#include "tests/support/eventually.h"
+#include "tests/support/device_life.h"
 #include "tests/support/hid_mock.h"
 #include "tests/unit/drivers/polhem/polhem_messages.h"
 
@@ -24,7 +23,14 @@ class PolhemDevice : public testing::Test {
  protected:
   void plug_in(std::size_t report_bytes) {
     length = report_bytes;
-    mock.emplace(bus, test::HidIdentity{.vendor = 0x16c0, .product = 0x0486, .usage_page = 0xAB, .usage = 0},
+    ++place;
+    mock.emplace(bus,
+                 test::HidIdentity{.vendor = 0x16c0,
+                                   .product = 0x0486,
+                                   .usage_page = 0xAB,
+                                   .usage = 0,
+                                   .port = place,
+                                   .node = place},
                  test::HidFunction{.out = [this](std::span<const std::uint8_t> report) { obey(report); }});
   }
 
@@ -44,6 +50,7 @@ class PolhemDevice : public testing::Test {
   test::MockBus bus;
   std::optional<test::HidMock> mock;
   std::size_t length = 0;
+  int place = 0;  // where it is plugged in: each time elsewhere
   std::array<int, 3> counts{11, 22, 33};
   std::atomic<int> current{0};  // of the third motor, mA
   std::atomic<int> broken{0};
@@ -83,7 +90,8 @@ TEST_F(PolhemDevice, SilenceAndUnpluggingEndItsSamples) {
   device->start();
   ASSERT_TRUE(eventually([&] { return device->read(0, sample); }));
   silent = true;
-  EXPECT_TRUE(eventually([&] { return !device->read(0, sample); })) << "silent";
+  EXPECT_TRUE(eventually([&] { return device->state().losses == 1; })) << "silent";
+  EXPECT_FALSE(device->read(0, sample));
   silent = false;
   EXPECT_TRUE(eventually([&] { return device->read(0, sample); })) << "it is told to get going again";
   mock->unplug();
@@ -92,12 +100,28 @@ TEST_F(PolhemDevice, SilenceAndUnpluggingEndItsSamples) {
 }
 
 TEST_F(PolhemDevice, WithoutOneTheErrorTellsSo) {
-  try {
-    device->start();
-    FAIL() << "no exception";
-  } catch (const DeviceError& error) {
-    EXPECT_STREQ(error.what(), "device \"arm\": no WoodenHaptics arm is connected");
-  }
+  device->start();
+  EXPECT_EQ(test::why_not_open(*device), "no WoodenHaptics arm is connected");
+}
+
+TEST_F(PolhemDevice, ThatIsPluggedInAgainIsInNoKnownPoseUntilAPersonTellsThatItRests) {
+  plug_in(64);
+  device->start();
+  ASSERT_TRUE(test::reaches(*device, DevicePhase::kReady)) << "at the start the config tells that it rests";
+  mock->unplug();
+  ASSERT_TRUE(eventually([&] { return device->state().losses == 1; }));
+  mock.reset();
+  ASSERT_TRUE(test::reaches(*device, DevicePhase::kAbsent));
+  counts = {11, 22, 33};
+  plug_in(64);
+  ASSERT_TRUE(test::reaches(*device, DevicePhase::kHoming));
+  EXPECT_FALSE(device->read(0, sample));
+  EXPECT_TRUE(eventually([&] { return device->words().reason.find("calibrate") != std::string::npos; }));
+  ASSERT_TRUE(device->knows(DeviceAction::kCalibrate));
+  device->request(DeviceAction::kCalibrate);
+  EXPECT_TRUE(test::reaches(*device, DevicePhase::kReady));
+  ASSERT_TRUE(device->read(0, sample));
+  EXPECT_NEAR(sample.position.z, 0.205, 1e-12);
 }
 
 }  // namespace

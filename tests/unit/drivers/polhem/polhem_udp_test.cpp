@@ -11,7 +11,7 @@
 #include "drivers/device_error.h"
 #include "drivers/io/udp/udp_socket.h"
 #include "drivers/polhem/polhem_device.h"
-#include "tests/support/eventually.h"
+#include "tests/support/device_life.h"
 #include "tests/unit/drivers/polhem/polhem_messages.h"
 
 namespace haptic::drivers::polhem {
@@ -68,6 +68,7 @@ TEST(PolhemUdp, TellsWhereTheArmIsThroughGarbageAndSilence) {
   const std::unique_ptr<Device> device = make_polhem({.name = "arm", .udp_port = port});
   EXPECT_EQ(device->info().max_force, 0.0) << "positions only";
   device->start();
+  EXPECT_EQ(test::why_not_open(*device), "nothing is heard from it on UDP port " + std::to_string(port));
   Sender arm(port);
   DeviceSample sample;
   ASSERT_TRUE(eventually([&] {
@@ -76,12 +77,20 @@ TEST(PolhemUdp, TellsWhereTheArmIsThroughGarbageAndSilence) {
     return device->read(0, sample);
   }));
   EXPECT_NEAR(sample.position.z, 0.205, 1e-12);
-  EXPECT_TRUE(eventually([&] { return !device->read(0, sample); })) << "silent";
+  EXPECT_TRUE(test::reaches(*device, DevicePhase::kAbsent)) << "silent";
+  EXPECT_GE(device->state().losses, 1U);
+  EXPECT_FALSE(device->read(0, sample));
   EXPECT_TRUE(eventually([&] {
     arm.send(datagram(0, 0, 6000));
     return device->read(0, sample);
   }));
   device->stop();
+}
+
+TEST(PolhemUdp, APortThatIsTakenIsToldAtTheStart) {
+  const io::UdpSocket socket(0);
+  const std::unique_ptr<Device> device = make_polhem({.name = "arm", .udp_port = socket.port()});
+  EXPECT_THROW(device->start(), DeviceError);
 }
 
 }  // namespace

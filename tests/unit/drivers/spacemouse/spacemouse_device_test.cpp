@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/device_error.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "rt/tick_clock.h"
-#include "tests/support/eventually.h"
+#include "tests/support/device_life.h"
 #include "tests/support/hid_mock.h"
 
 namespace haptic::drivers::spacemouse {
@@ -25,15 +25,17 @@ class SpacemouseDevice : public testing::Test {
                  }});
   }
 
+  Bytes lit() {
+    Bytes last;
+    mock->with_lock([&] { last = led; });
+    return last;
+  }
+
   bool read() { return device->read(rt::monotonic_ns(), sample); }
 
   std::string error_of() {
-    try {
-      device->start();
-    } catch (const DeviceError& error) {
-      return error.what();
-    }
-    return "";
+    device->start();
+    return test::why_not_open(*device);
   }
 
   test::MockBus bus;
@@ -46,8 +48,8 @@ class SpacemouseDevice : public testing::Test {
 TEST_F(SpacemouseDevice, MovesAsItsPuckIsPushedAndTellsItsButtons) {
   plug_in({.vendor = 0x046d, .product = 0xc626});
   device->start();
-  EXPECT_EQ(led, (Bytes{4, 1}));
   ASSERT_TRUE(eventually([&] { return read(); })) << "at rest it sends nothing, and is there";
+  EXPECT_EQ(lit(), (Bytes{4, 1}));
   EXPECT_EQ(sample.position, glm::dvec3(0.0));
   mock->send(Bytes{3, 2, 0});
   ASSERT_TRUE(eventually([&] { return read() && sample.buttons == 2; }));
@@ -67,15 +69,18 @@ TEST_F(SpacemouseDevice, IsFoundByItsUsageWhateverItsProduct) {
 
 TEST_F(SpacemouseDevice, AMouseOfTheSameMakerIsNone) {
   plug_in({.vendor = 0x256f, .product = 0xc650, .usage = 2});
-  EXPECT_EQ(error_of(), "device \"puck\": no SpaceMouse is connected");
+  EXPECT_EQ(error_of(), "no SpaceMouse is connected");
 }
 
 TEST_F(SpacemouseDevice, OfTwoTheOneWithTheSerialIsTaken) {
   plug_in({.vendor = 0x046d, .product = 0xc626, .serial = "A"});
   const test::HidMock second(bus, {.vendor = 0x046d, .product = 0xc626, .serial = "B", .port = 2, .node = 1});
-  EXPECT_NE(error_of().find("2 of SpaceMouse are connected"), std::string::npos);
+  EXPECT_EQ(error_of(),
+            "2 SpaceMouse devices are connected, with the serials A and B: name the one that is meant by its "
+            "serial");
   device = make_spacemouse({.name = "puck", .serial = "B"});
   EXPECT_EQ(error_of(), "");
+  EXPECT_EQ(device->words().serial, "B");
   EXPECT_TRUE(led.empty()) << "the other one is left alone";
 }
 
@@ -86,6 +91,48 @@ TEST_F(SpacemouseDevice, UnpluggingItEndsItsSamplesAndStopStillReturns) {
   mock->unplug();
   EXPECT_TRUE(eventually([&] { return !read(); }));
   device->stop();
+}
+
+TEST_F(SpacemouseDevice, ComesWhenItIsPluggedInAndAgainEachTime) {
+  EXPECT_EQ(error_of(), "no SpaceMouse is connected");
+  for (std::uint32_t round = 1; round <= 3; ++round) {
+    const int place = static_cast<int>(round);
+    plug_in({.vendor = 0x046d, .product = 0xc626, .serial = "A", .port = place, .node = place});
+    ASSERT_TRUE(test::reaches(*device, DevicePhase::kReady));
+    EXPECT_TRUE(read());
+    EXPECT_EQ(device->words().serial, "A");
+    mock->unplug();
+    ASSERT_TRUE(eventually([&] { return device->state().losses == round; }));
+    mock.reset();
+    ASSERT_TRUE(test::reaches(*device, DevicePhase::kAbsent));
+    EXPECT_FALSE(read());
+  }
+  EXPECT_EQ(device->words().serial, "");
+}
+
+TEST_F(SpacemouseDevice, ShowsWhichOneItIsByItsLight) {
+  plug_in({.vendor = 0x046d, .product = 0xc626});
+  device->start();
+  ASSERT_TRUE(test::reaches(*device, DevicePhase::kReady));
+  EXPECT_TRUE(device->knows(DeviceAction::kIdentify));
+  EXPECT_FALSE(device->knows(DeviceAction::kHome));
+  device->request(DeviceAction::kIdentify);
+  for (int blink = 0; blink < 2; ++blink) {
+    EXPECT_TRUE(eventually([&] { return lit() == Bytes{4, 0}; }));
+    EXPECT_TRUE(eventually([&] { return lit() == Bytes{4, 1}; }));
+  }
+}
+
+TEST_F(SpacemouseDevice, UdevTellsWhenOneIsPluggedIn) {
+  const std::unique_ptr<PlugMonitor> hid = io::watch_udev("hidraw");
+  const std::unique_ptr<PlugMonitor> serial = io::watch_udev("tty");
+  EXPECT_FALSE(hid->take());
+  plug_in({.vendor = 0x046d, .product = 0xc626});
+  EXPECT_TRUE(eventually([&] { return hid->take(); }));
+  EXPECT_FALSE(hid->take()) << "once";
+  EXPECT_FALSE(serial->take());
+  mock.reset();
+  EXPECT_FALSE(hid->take()) << "what goes is no news";
 }
 
 }  // namespace
