@@ -9,11 +9,13 @@
 #include "drivers/fastrak/fastrak_device.h"
 #include "drivers/haply/haply_device.h"
 #include "drivers/hydra/hydra_device.h"
+#include "drivers/phantom/phantom_device.h"
 #include "drivers/playback/playback_device.h"
 #include "drivers/polhem/polhem_device.h"
 #include "drivers/simulated/simulated_device.h"
 #include "drivers/spacemouse/spacemouse_device.h"
 #include "drivers/virtual/virtual_device.h"
+#include "haptic/v1/calibration.pb.h"
 
 namespace haptic::drivers {
 
@@ -23,6 +25,7 @@ namespace {
 struct Files {
   std::vector<PathPoint> path;
   const std::string& firmware;
+  const v1::PhantomCalibration* calibration;
 };
 
 struct Driver {
@@ -171,6 +174,52 @@ std::unique_ptr<Device> make_haply(const v1::Device& config, const Files& /*file
                             .world_from_base = base_of(config)});
 }
 
+phantom::Reference reference_of(v1::PhantomCalibration::Reference reference) {
+  switch (reference) {
+    case v1::PhantomCalibration::REST_AT_START:
+      return phantom::Reference::kRestAtStart;
+    case v1::PhantomCalibration::COUNTS_ARE_KEPT:
+      return phantom::Reference::kCountsAreKept;
+    default:
+      return phantom::Reference::kRestAtButton;
+  }
+}
+
+phantom::Calibration calibration_of(const v1::PhantomCalibration& message) {
+  phantom::Calibration calibration{
+      .geometry = {.upper_arm = message.upper_arm(), .forearm = message.forearm()},
+      .reference = reference_of(message.reference())};
+  for (int i = 0; i < std::min<int>(message.joint_size(), 3); ++i) {
+    const v1::PhantomCalibration::Joint& joint = message.joint(i);
+    const auto index = static_cast<std::size_t>(i);
+    calibration.map.encoders[index] = joint.encoder();
+    calibration.map.encoder_bits[index] = joint.encoder_bits();
+    calibration.map.motors[index] = joint.motor();
+    calibration.map.largest_words[index] = joint.largest_word();
+    calibration.counts_per_radian[index] = joint.counts_per_radian();
+    calibration.rest_counts[index] = joint.rest_count();
+    calibration.rest_angles[i] = joint.rest_angle();
+    calibration.least_angles[i] = joint.min_angle();
+    calibration.greatest_angles[i] = joint.max_angle();
+    calibration.words_per_torque[i] = joint.words_per_newton_metre();
+  }
+  if (message.has_button()) {
+    calibration.map.button = phantom::Button{.index = message.button().register_(),
+                                             .bit = message.button().bit(),
+                                             .is_low = message.button().is_low()};
+  }
+  return calibration;
+}
+
+std::unique_ptr<Device> make_phantom(const v1::Device& config, const Files& files) {
+  phantom::PhantomSettings settings{.name = config.name(),
+                                    .path = config.phantom().path(),
+                                    .max_force = config.phantom().max_force(),
+                                    .world_from_base = base_of(config)};
+  if (files.calibration != nullptr) settings.calibration = calibration_of(*files.calibration);
+  return phantom::make_phantom(std::move(settings));
+}
+
 std::unique_ptr<Device> make_virtual(const v1::Device& config, const Files& /*files*/) {
   return std::make_unique<VirtualDevice>(config.name());
 }
@@ -199,6 +248,7 @@ constexpr Driver kDrivers[] = {
     {v1::Device::kHaply, nullptr, &make_haply},
     {v1::Device::kVirtual, nullptr, &make_virtual},
     {v1::Device::kExternal, nullptr, &make_external},
+    {v1::Device::kPhantom, nullptr, &make_phantom},
 };
 
 const Driver* find_driver(const v1::Device& config) {
@@ -221,12 +271,12 @@ bool is_computed(const v1::Device& config) {
 }
 
 std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path,
-                                    const std::string& firmware) {
+                                    const std::string& firmware, const v1::PhantomCalibration* calibration) {
   const Driver* const driver = find_driver(config);
   if (driver == nullptr) {
     throw DeviceError("device \"" + config.name() + "\": it names no driver");
   }
-  return driver->make(config, {std::move(path), firmware});
+  return driver->make(config, {std::move(path), firmware, calibration});
 }
 
 }  // namespace haptic::drivers

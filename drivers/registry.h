@@ -11,6 +11,10 @@
 #include "drivers/path.h"
 #include "haptic/v1/config.pb.h"
 
+namespace haptic::v1 {
+class PhantomCalibration;
+}
+
 namespace haptic::drivers {
 
 /// The file with the path that the device follows, as the config names it; empty if it follows none.
@@ -20,9 +24,10 @@ std::string path_file_of(const v1::Device& config);
 bool is_computed(const v1::Device& config);
 
 /// A device that is not yet started. `path` holds the rows of path_file_of(), `firmware` the bytes that its
-/// driver uploads. The config must be valid and complete but for its driver: throws DeviceError if it names
-/// none that is known here.
+/// driver uploads, `calibration` the checked constants of a PHANToM, if there are any. The config must be
+/// valid and complete but for its driver: throws DeviceError if it names none that is known here.
 std::unique_ptr<Device> make_device(const v1::Device& config, std::vector<PathPoint> path,
-                                    const std::string& firmware = {});
+                                    const std::string& firmware = {},
+                                    const v1::PhantomCalibration* calibration = nullptr);
 
 }  // namespace haptic::drivers

@@ -10,6 +10,7 @@
 
 #include "load/device_config.h"
 #include "load/path_file.h"
+#include "load/phantom_calibration.h"
 #include "load/ranges.h"
 #include "load/read_file.h"
 #include "load/safety_config.h"
@@ -117,6 +118,7 @@ class ConfigCheck {
       check_device_safety(source_, field, device);
       loaded.paths.push_back(path_of(field, device));
       loaded.firmware.push_back(check_hardware(source_, field, file_, device));
+      loaded.calibrations.push_back(check_phantom(source_, field, file_, device));
     }
   }
 
@@ -304,7 +306,7 @@ LoadedConfig load_config(const std::filesystem::path& file) {
 LoadedConfig check_config(v1::DaemonConfig message, const TextSource& source,
                           const std::filesystem::path& file) {
   check_values(message, source);
-  LoadedConfig loaded{std::move(message), {}, {}, source};
+  LoadedConfig loaded{std::move(message), {}, {}, {}, source};
   ConfigCheck(loaded.message, source, file).check(loaded);
   return loaded;
 }

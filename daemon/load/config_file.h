@@ -1,15 +1,20 @@
 #pragma once
 // The daemon's config, checked and complete: what haptic/v1/config.proto calls a default is filled in, paths
-// are relative to nothing any more, and the paths that devices follow and the firmware that they need are
-// read.
+// are relative to nothing any more, and the paths that devices follow, the firmware that they need and their
+// calibrations are read.
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "drivers/path.h"
 #include "haptic/v1/config.pb.h"
 #include "load/text_message.h"
+
+namespace haptic::v1 {
+class PhantomCalibration;
+}
 
 namespace haptic::load {
 
@@ -20,7 +25,8 @@ struct LoadedConfig {
   v1::DaemonConfig message;  // every field set that has a default; paths absolute or relative to the process
   std::vector<std::vector<drivers::PathPoint>> paths;  // one for each device, in order; empty if it has none
   std::vector<std::string> firmware;  // the same for the bytes of the firmware that a device's driver uploads
-  TextSource source;                  // where the fields stand
+  std::vector<std::shared_ptr<const v1::PhantomCalibration>> calibrations;  // the same; nullptr: none
+  TextSource source;                                                        // where the fields stand
 };
 
 /// Reads and checks the file, and the CSV files that it names. Throws LoadError. The scene that it names is

@@ -16,7 +16,8 @@ DeviceSet::DeviceSet(const load::LoadedConfig& config) {
   for (int i = 0; i < config.message.device_size(); ++i) {
     const v1::Device& device = config.message.device(i);
     const auto index = static_cast<std::size_t>(i);
-    owned_.push_back(drivers::make_device(device, config.paths[index], config.firmware[index]));
+    owned_.push_back(drivers::make_device(device, config.paths[index], config.firmware[index],
+                                          config.calibrations[index].get()));
     pointers_.push_back(owned_.back().get());
     names_.push_back(device.name());
   }

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // files that it names are not what is tried here
     for (const v1::Device& device : message.device()) {
       if (device.has_playback() || device.simulated().has_hand()) return 0;
-      if (!device.falcon().firmware().empty()) return 0;
+      if (!device.falcon().firmware().empty() || !device.phantom().calibration().empty()) return 0;
     }
     const load::LoadedConfig config = load::check_config(message, source, "/none/f");
     const double rate = config.message.servo().rate_hz();

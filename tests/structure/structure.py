@@ -88,6 +88,7 @@ ROOMS = {
         ours=("drivers/device.h", "drivers/device_error.h", "drivers/io/same_kind.h", "daemon/rt"),
         libraries=("hidapi/", "posix"),
     ),
+    "drivers/io/phantom": Room(ours=("drivers/device_error.h",), libraries=("posix",)),
     "drivers/io/serial": Room(
         ours=("drivers/device_error.h",),
         libraries=("boost/asio", "boost/system/", "posix"),

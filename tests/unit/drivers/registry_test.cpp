@@ -6,6 +6,8 @@
 
 #include <limits>
 
+#include "haptic/v1/calibration.pb.h"
+
 namespace haptic::drivers {
 namespace {
 
@@ -76,6 +78,19 @@ TEST(Registry, MakesAFalconOfItsConfig) {
   EXPECT_EQ(device->info().name, "right");
   EXPECT_EQ(device->info().driver, "falcon");
   EXPECT_EQ(device->info().max_force, 2.5);
+}
+
+TEST(Registry, APhantomGivesForceByItsCalibrationOnly) {
+  v1::Device config;
+  config.set_name("arm");
+  config.mutable_phantom()->set_path("/dev/phantom0");
+  config.mutable_phantom()->set_max_force(3.0);
+  EXPECT_EQ(make_device(config, {})->info().max_force, 0.0);
+  v1::PhantomCalibration calibration;
+  for (int i = 0; i < 3; ++i) calibration.add_joint();
+  const std::unique_ptr<Device> device = make_device(config, {}, {}, &calibration);
+  EXPECT_EQ(device->info().driver, "phantom");
+  EXPECT_EQ(device->info().max_force, 3.0);
 }
 
 TEST(Registry, EveryDriverOfTheSchemaIsKnown) {

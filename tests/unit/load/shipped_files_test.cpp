@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "load/config_file.h"
+#include "load/phantom_calibration.h"
 #include "load/scene_file.h"
 #include "load/scene_report.h"
 #include "tests/unit/load/load_support.h"
@@ -31,6 +32,13 @@ TEST(ShippedFiles, EveryConfigLoadsWithItsSceneAndWithoutAWarning) {
     ASSERT_FALSE(config.message.scene().empty());
     const auto scene = load_scene(config.message.scene(), config.message.capacity());
     EXPECT_EQ(report_scene(*scene, &config).warnings, std::vector<std::string>{});
+  }
+}
+
+TEST(ShippedFiles, EveryCalibrationLoadsAndGivesNoForceAsItStands) {
+  for (const auto& file : files_of("config/calibrations", false)) {
+    SCOPED_TRACE(file);
+    EXPECT_EQ(load_phantom_calibration(file).max_force(), 0.0);
   }
 }
 
