@@ -46,10 +46,16 @@ ROOMS = {
             "daemon/load/embedded_mesh.h",
             "daemon/load/error.h",
             "daemon/load/state_message.h",
+            "daemon/flight",
             "proto",
             "schema",
         ),
         libraries=("glm/", "google/protobuf/", "boost/", "spdlog/", "fmt/", "posix"),
+    ),
+    # recordings of faults; knows neither sockets nor the servo thread
+    "daemon/flight": Room(
+        ours=("daemon/engine", "daemon/load/embedded_mesh.h", "proto/recording", "schema"),
+        libraries=("fmt/", "posix"),
     ),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/replay": Room(
@@ -104,6 +110,7 @@ ROOMS = {
     "proto/csv": Room(),
     "proto/device": Room(libraries=("posix",)),  # copied into programs that have nothing else of ours
     "proto/foxglove": Room(ours=("schema",)),
+    "proto/metrics": Room(ours=("schema",)),
     "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
     "client/plot": Room(
