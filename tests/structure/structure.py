@@ -47,6 +47,7 @@ ROOMS = {
             "daemon/load/error.h",
             "daemon/load/state_message.h",
             "daemon/flight",
+            "daemon/log/fields.h",
             "proto",
             "schema",
         ),
@@ -57,6 +58,7 @@ ROOMS = {
         ours=("daemon/engine", "daemon/load/embedded_mesh.h", "proto/recording", "schema"),
         libraries=("fmt/", "posix"),
     ),
+    "daemon/log": Room(ours=("schema",), libraries=("spdlog/", "posix")),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/replay": Room(
         ours=("daemon/servo", "daemon/load", "daemon/engine", "daemon/safety", "drivers/device.h", "schema"),
