@@ -15,12 +15,13 @@ inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
 
 /// All that Hello.feature can name; the daemon of this version has them all. A name stays for good.
-inline constexpr std::array<std::string_view, 5> kFeatures = {
+inline constexpr std::array<std::string_view, 6> kFeatures = {
     "subscribe.filter",    // Subscribe.finger, object, only_in_contact
     "subscribe.delivery",  // Subscribe.delivery, Envelope.batch, ticks and topics in Gap
     "subscribe.events",    // topics EVENTS and STATS
     "replay",       // topic INPUTS, GetState, GetScene.embed_meshes and revision, SceneDescription.carry
     "device.move",  // MoveDevice
+    "faults",       // ListFaults, the event FAULT_RECORDED
 };
 
 /// The largest message that the daemon accepts from a peer that has not said Hello.
