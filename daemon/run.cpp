@@ -4,8 +4,6 @@
 
 #include <csignal>
 // Boost.Asio of Debian 12 needs it before
-#include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -19,6 +17,7 @@
 #include "daemon/scene_builder.h"
 #include "ipc/server.h"
 #include "load/config_file.h"
+#include "log/begin_log.h"
 #include "rt/memory_reserve.h"
 #include "rt/tick_clock.h"
 #include "servo/servo_loop.h"
@@ -34,36 +33,6 @@ constexpr std::uint64_t kFirstRevision = 1;
 // for letting go in order when memory has run out: answers and frames that wait, a log line
 constexpr std::size_t kMemoryReserve = std::size_t{16} * 1024 * 1024;
 
-/// The level as journald reads it at the beginning of a line: "<4>" for a warning.
-class JournalLevel final : public spdlog::custom_flag_formatter {
- public:
-  void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
-              spdlog::memory_buf_t& line) override {
-    const char* level = "<6>";
-    if (message.level == spdlog::level::debug || message.level == spdlog::level::trace) level = "<7>";
-    if (message.level == spdlog::level::warn) level = "<4>";
-    if (message.level >= spdlog::level::err) level = "<3>";
-    line.append(level, level + 3);
-  }
-  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
-    return std::make_unique<JournalLevel>();
-  }
-};
-
-void begin_log(bool foreground) {
-  const auto logger =
-      std::make_shared<spdlog::logger>("hapticd", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-  if (foreground) {
-    logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  } else {
-    auto formatter = std::make_unique<spdlog::pattern_formatter>();
-    formatter->add_flag<JournalLevel>('*').set_pattern("%*%v");
-    logger->set_formatter(std::move(formatter));
-  }
-  logger->flush_on(spdlog::level::info);
-  spdlog::set_default_logger(logger);
-}
-
 /// SIGINT and SIGTERM. Made before any thread, so that all inherit the mask and none is interrupted.
 class StopSignals {
  public:
@@ -73,6 +42,7 @@ class StopSignals {
     sigaddset(&signals_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is an error as a full disk is
   }
 
   void wait() const {
@@ -179,12 +149,12 @@ ipc::ServerSettings server_settings(const RunOptions& options, const v1::DaemonC
 }  // namespace
 
 void run(const RunOptions& options) {
-  begin_log(options.foreground);
   const StopSignals signals;
   const rt::MemoryReserve reserve(kMemoryReserve, []() noexcept { ::kill(::getpid(), SIGTERM); });
 
   // what is written in files
   const load::LoadedConfig config = load::load_config(options.config);
+  log::begin_log(config.message.log(), options.foreground);
   setup::DeviceSet devices(config);
   const SceneBuilder builder(config.message.capacity(), {devices.names().begin(), devices.names().end()});
   ipc::BuiltScene scene = builder.from_file(options.scene.empty() ? config.message.scene() : options.scene);

@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
 
 /// All that Hello.feature can name; the daemon of this version has them all. A name stays for good.
-inline constexpr std::array<std::string_view, 7> kFeatures = {
+inline constexpr std::array<std::string_view, 8> kFeatures = {
     "subscribe.filter",    // Subscribe.finger, object, only_in_contact
     "subscribe.delivery",  // Subscribe.delivery, Envelope.batch, ticks and topics in Gap
     "subscribe.events",    // topics EVENTS and STATS
@@ -23,6 +23,7 @@ inline constexpr std::array<std::string_view, 7> kFeatures = {
     "device.move",     // MoveDevice
     "device.manage",   // ManageDevice; phase, reason, serial and losses of DeviceStatus; DEVICE_CHANGED
     "emergency_stop",  // EmergencyStop, Device.stop_button
+    "faults",          // ListFaults, the event FAULT_RECORDED
 };
 
 /// The largest message that the daemon accepts from a peer that has not said Hello.

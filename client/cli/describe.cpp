@@ -98,6 +98,8 @@ std::string describe(v1::Event::Kind kind) {
       return "scene changed";
     case v1::Event::TICKS_MISSED:
       return "ticks missed";
+    case v1::Event::FAULT_RECORDED:
+      return "fault recorded";
     default:
       return fmt::format("event {}", static_cast<int>(kind));
   }

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "client/cli/describe.h"
 #include "client/cli/table.h"
 #include "client/cli/verbs.h"
+#include "client/lib/error.h"
+#include "proto/metrics/exposition.h"
 
 namespace haptic::cli {
 namespace {
@@ -45,11 +49,41 @@ std::string transitions(const v1::Stats& stats) {
   return table.to_string();
 }
 
-ExitCode show_stats(Command& command, bool reset) {
+constexpr int kMostFaults = 100;  // that the daemon tells of
+
+// an older daemon does not count them
+std::optional<std::map<v1::FaultKind, std::uint64_t>> ask_faults(client::Connection& daemon) {
+  try {
+    const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_list_faults(); });
+    return metrics::count_faults(response.faults(), kMostFaults);
+  } catch (const client::Unsupported&) {
+    return std::nullopt;
+  }
+}
+
+void print_prometheus(client::Connection& daemon, const v1::Stats& stats) {
+  const v1::Response status = call(daemon, [](v1::Request& request) { request.mutable_get_status(); });
+  const v1::Response devices = call(daemon, [](v1::Request& request) { request.mutable_list_devices(); });
+  fmt::print("{}", metrics::exposition({.status = status.status(),
+                                        .devices = devices.devices(),
+                                        .stats = stats,
+                                        .faults = ask_faults(daemon)}));
+}
+
+struct StatsOptions {
+  bool reset = false;
+  bool prometheus = false;
+};
+
+ExitCode show_stats(Command& command, const StatsOptions& options) {
   client::Connection& daemon = command.connect();
   const v1::Response response =
-      call(daemon, [reset](v1::Request& request) { request.mutable_get_stats()->set_reset(reset); });
+      call(daemon, [&](v1::Request& request) { request.mutable_get_stats()->set_reset(options.reset); });
   const v1::Stats& stats = response.stats();
+  if (options.prometheus) {
+    print_prometheus(daemon, stats);
+    return kDone;
+  }
   if (command.json) {
     print_json(stats);
     return kDone;
@@ -73,10 +107,12 @@ ExitCode show_stats(Command& command, bool reset) {
 }  // namespace
 
 void add_stats(CLI::App& app, Command& command) {
-  const auto reset = std::make_shared<bool>(false);
+  const auto options = std::make_shared<StatsOptions>();
   CLI::App& verb = add_verb(app, command, "stats", "how long ticks take, and what HIPs do in them",
-                            [reset](Command& chosen) { return show_stats(chosen, *reset); });
-  add_flag(verb, "--reset", *reset, "start to count anew after this");
+                            [options](Command& chosen) { return show_stats(chosen, *options); });
+  add_flag(verb, "--reset", options->reset, "start to count anew after this");
+  add_flag(verb, "--prometheus", options->prometheus,
+           "all numbers of the daemon in the text format of Prometheus");
 }
 
 }  // namespace haptic::cli

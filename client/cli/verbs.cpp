@@ -24,6 +24,7 @@ void add_verbs(CLI::App& app, Command& command) {
   add_arm(app, command);
   add_lease(app, command);
   add_pause(app, command);
+  add_faults(app, command);
   add_clear(app, command);
   add_certificates(app, command);
   add_completion(app, command);

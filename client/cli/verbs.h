@@ -21,6 +21,7 @@ void add_arm(CLI::App& app, Command& command);         // arm, disarm
 void add_lease(CLI::App& app, Command& command);
 void add_pause(CLI::App& app, Command& command);  // pause, resume, step
 void add_clear(CLI::App& app, Command& command);
+void add_faults(CLI::App& app, Command& command);
 void add_watch(CLI::App& app, Command& command);
 void add_stats(CLI::App& app, Command& command);
 void add_record(CLI::App& app, Command& command);

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "ipc/convert.h"
+#include "log/fields.h"
+#include "proto/metrics/names.h"
 
 namespace haptic::ipc {
 namespace {
@@ -35,6 +37,16 @@ std::optional<Wording> wording_of(servo::CommandKind command) noexcept {
     default:
       return std::nullopt;
   }
+}
+
+// for machines that read the journal
+log::FieldList fields_of(const v1::Event& event) {
+  log::FieldList fields = {{"HAPTICD_TICK", std::to_string(event.tick())}};
+  if (event.has_fault()) fields.emplace_back("HAPTICD_FAULT", metrics::word_of(event.fault().kind()));
+  const std::string& device = event.has_fault() ? event.fault().device() : event.device();
+  if (!device.empty()) fields.emplace_back("HAPTICD_DEVICE", device);
+  if (!event.recording().empty()) fields.emplace_back("HAPTICD_RECORDING", event.recording());
+  return fields;
 }
 
 }  // namespace
@@ -89,6 +101,7 @@ void Announcer::poll(SteadyClock::time_point now) {
 }
 
 void Announcer::tell(const v1::Event& event) {
+  const log::Fields fields(fields_of(event));
   const bool is_bad = event.kind() == v1::Event::FAULT_LATCHED || event.kind() == v1::Event::TICKS_MISSED;
   spdlog::log(is_bad ? spdlog::level::warn : spdlog::level::info, "tick {}: {}", event.tick(),
               event.message());

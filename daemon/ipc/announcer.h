@@ -26,9 +26,10 @@ class Announcer {
   /// Tells of missed ticks that were held back.
   void poll(SteadyClock::time_point now);
 
- private:
+  /// Everybody, and the log.
   void tell(const v1::Event& event);
 
+ private:
   const std::vector<v1::DeviceDescription>& devices_;
   Broadcast broadcast_;
   std::uint64_t missed_ = 0;  // not yet told

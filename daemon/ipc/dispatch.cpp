@@ -22,6 +22,7 @@ constexpr std::array kRows = {
     Row{v1::Request::kGetScene, v1::OBSERVE, handle_get_scene},
     Row{v1::Request::kGetStats, v1::OBSERVE, handle_get_stats},
     Row{v1::Request::kGetState, v1::OBSERVE, handle_get_state},
+    Row{v1::Request::kListFaults, v1::OBSERVE, handle_list_faults},
     Row{v1::Request::kSubscribe, v1::OBSERVE, handle_subscribe},
     Row{v1::Request::kUnsubscribe, v1::OBSERVE, handle_unsubscribe},
     Row{v1::Request::kLoadScene, v1::SCRIPT, handle_load_scene},

@@ -9,6 +9,7 @@
 
 #include "ipc/device_moves.h"
 #include "ipc/drive_lease.h"
+#include "ipc/fault_history.h"
 #include "ipc/publisher.h"
 #include "ipc/reply.h"
 #include "ipc/scene_store.h"
@@ -39,6 +40,7 @@ struct Desk {
   std::function<std::size_t()> count_clients;
   DriveLease& lease;
   DeviceMoves moves{};
+  FaultHistory faults{};
 };
 
 /// The least role that the request needs; ROLE_UNSPECIFIED if this daemon does not know the call.

@@ -6,6 +6,7 @@
 
 #include "ipc/convert.h"
 #include "ipc/handlers.h"
+#include "ipc/reports.h"
 
 namespace haptic::ipc {
 namespace {
@@ -99,11 +100,9 @@ bool is_open(drivers::DevicePhase phase) noexcept { return phase >= drivers::Dev
 
 }  // namespace
 
-void handle_list_devices(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
-                         const Reply& reply) {
-  v1::Response response;
+v1::DeviceList report_devices(const Desk& desk) {
   const LatestTick& latest = desk.publisher.latest();
-  v1::DeviceList& list = *response.mutable_devices();
+  v1::DeviceList list;
   for (std::size_t i = 0; i < desk.services.devices.size(); ++i) {
     v1::DeviceStatus& device = *list.add_device();
     *device.mutable_description() = desk.services.devices[i];
@@ -123,6 +122,13 @@ void handle_list_devices(Desk& desk, const Caller& /*caller*/, const v1::Request
       device.set_reason(silent(device));
     }
   }
+  return list;
+}
+
+void handle_list_devices(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
+                         const Reply& reply) {
+  v1::Response response;
+  *response.mutable_devices() = report_devices(desk);
   reply.send(std::move(response));
 }
 

@@ -1,14 +1,18 @@
 #include "ipc/convert.h"
 #include "ipc/handlers.h"
+#include "ipc/reports.h"
 
 namespace haptic::ipc {
 
-void handle_get_stats(Desk& desk, const Caller& /*caller*/, const v1::Request& request, const Reply& reply) {
+v1::Stats report_stats(const Desk& desk) {
   servo::Mailbox& mailbox = desk.services.mailbox;
   mailbox.stats.update();
+  return to_wire(mailbox.stats.latest(), desk.services.rate_hz, mailbox.snapshots.lost());
+}
+
+void handle_get_stats(Desk& desk, const Caller& /*caller*/, const v1::Request& request, const Reply& reply) {
   v1::Response response;
-  *response.mutable_stats() =
-      to_wire(mailbox.stats.latest(), desk.services.rate_hz, mailbox.snapshots.lost());
+  *response.mutable_stats() = report_stats(desk);
   if (!request.get_stats().reset()) {
     reply.send(std::move(response));
     return;

@@ -3,6 +3,7 @@
 
 #include "ipc/convert.h"
 #include "ipc/handlers.h"
+#include "ipc/reports.h"
 
 namespace haptic::ipc {
 namespace {
@@ -32,10 +33,8 @@ void add_driver(const Desk& desk, SteadyClock::time_point now, v1::Status& statu
 
 }  // namespace
 
-void handle_get_status(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
-                       const Reply& reply) {
-  v1::Response response;
-  v1::Status& status = *response.mutable_status();
+v1::Status report_status(const Desk& desk) {
+  v1::Status status;
   const LatestTick& latest = desk.publisher.latest();
   const v1::SceneDescription& scene = desk.scenes.current();
   status.set_version(desk.services.version);
@@ -58,6 +57,13 @@ void handle_get_status(Desk& desk, const Caller& /*caller*/, const v1::Request& 
   status.set_clients(static_cast<std::uint32_t>(desk.count_clients()));
   status.set_missed_ticks(latest.missed_ticks);
   *status.mutable_real_time() = desk.services.real_time;
+  return status;
+}
+
+void handle_get_status(Desk& desk, const Caller& /*caller*/, const v1::Request& /*request*/,
+                       const Reply& reply) {
+  v1::Response response;
+  *response.mutable_status() = report_status(desk);
   reply.send(std::move(response));
 }
 

@@ -29,6 +29,8 @@ void handle_release_drive(Desk& desk, const Caller& caller, const v1::Request& r
 void handle_heartbeat(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_move.cpp
 void handle_move_device(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
+// handle_faults.cpp
+void handle_list_faults(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_stats.cpp
 void handle_get_stats(Desk& desk, const Caller& caller, const v1::Request& request, const Reply& reply);
 // handle_subscribe.cpp

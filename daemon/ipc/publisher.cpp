@@ -34,8 +34,9 @@ std::size_t Publisher::subscriptions_of(ClientId client) const noexcept {
 }
 
 bool Publisher::has_subscription_for(v1::Topic topic) const noexcept {
-  return std::any_of(subscriptions_.begin(), subscriptions_.end(),
-                     [topic](const Subscription& entry) { return (entry.topics & topic_bit(topic)) != 0; });
+  return std::any_of(subscriptions_.begin(), subscriptions_.end(), [topic](const Subscription& entry) {
+    return entry.client != kDaemonItself && (entry.topics & topic_bit(topic)) != 0;
+  });
 }
 
 void Publisher::learn(const v1::SceneDescription& scene) {

@@ -20,6 +20,8 @@
 namespace haptic::ipc {
 
 using ClientId = std::uint64_t;
+inline constexpr ClientId kDaemonItself =
+    0;  // subscribes, but needs no scenes or statistics to be kept for it
 using FrameSink = std::function<void(const OutgoingFrame&)>;
 
 /// The newest snapshot, as far as queries ask about it.
@@ -58,6 +60,7 @@ class Publisher {
   void publish(const servo::Snapshot& snapshot);
   void publish(const v1::Event& event);
   void publish(const v1::Stats& stats);
+  /// Of a client.
   bool has_subscription_for(v1::Topic topic) const noexcept;
 
   const LatestTick& latest() const noexcept { return latest_; }

@@ -26,6 +26,7 @@ class SceneStore {
 
   /// The scene that runs, as it was built.
   const engine::Scene& running() const noexcept { return *running_; }
+  const std::shared_ptr<const engine::Scene>& shared_running() const noexcept { return running_; }
 
   /// Answers with a scene that runs or has run and is still kept; `most_bytes` is how large the answer may
   /// be.

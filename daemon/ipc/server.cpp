@@ -14,9 +14,14 @@
 #include <utility>
 
 #include "ipc/announcer.h"
+#include "ipc/convert.h"
 #include "ipc/device_watch.h"
+#include "ipc/flight_recorder.h"
+#include "ipc/metrics_server.h"
+#include "ipc/reports.h"
 #include "ipc/session.h"
 #include "ipc/tls.h"
+#include "proto/metrics/exposition.h"
 
 namespace haptic::ipc {
 namespace asio = boost::asio;
@@ -24,6 +29,7 @@ using boost::system::error_code;
 
 namespace {
 
+constexpr std::chrono::seconds kFlushPeriod{1};         // of the log
 constexpr std::chrono::milliseconds kAcceptPause{100};  // after an error, as when descriptors have run out
 
 using Local = asio::local::stream_protocol;
@@ -56,8 +62,20 @@ class Server::Impl {
         poll_timer_(io_),
         stop_timer_(io_) {
     publisher_.learn(scenes_.current());
+    if (!settings_.flight.directory.empty()) {
+      flight_.emplace(
+          settings_.flight, services_, publisher_, servo_, [this] { return report_devices(desk_); },
+          [this](const std::vector<std::uint64_t>& faults, const std::string& path) {
+            tell_recording(faults, path);
+          });
+      flight_->learn(scenes_.current(), scenes_.shared_running(), 0);
+    }
     for (const v1::Listen& listen : or_default(settings_.listen)) {
       open(listen);
+    }
+    if (settings_.metrics) {
+      metrics_.emplace(io_, *settings_.metrics, [this] { return make_metrics(); });
+      addresses_.insert(addresses_.end(), metrics_->addresses().begin(), metrics_->addresses().end());
     }
   }
 
@@ -67,6 +85,9 @@ class Server::Impl {
     }
     for (auto& acceptor : tcp_acceptors_) {
       accept(acceptor);
+    }
+    if (metrics_) {
+      metrics_->start();
     }
     poll();
     io_.run();
@@ -216,7 +237,14 @@ class Server::Impl {
     lease_.poll(now);
     // the event that a scene runs was sent before the first snapshot of it
     publisher_.drain(services_.mailbox.snapshots, [this, now] { servo_.poll(now); });
+    if (flight_) {
+      flight_->poll(now);
+    }
     publish_stats();
+    if (now >= next_flush_) {
+      spdlog::default_logger()->flush();  // tells of lines that were held back
+      next_flush_ = now + kFlushPeriod;
+    }
     poll_timer_.expires_after(settings_.poll_period);
     poll_timer_.async_wait([this](const error_code& error) {
       if (!error) {
@@ -240,8 +268,46 @@ class Server::Impl {
     if (!is_fault_or_miss && event.command == servo::CommandKind::kSwapScene) {
       scenes_.swapped(event.kind == servo::EventKind::kDone);
       publisher_.learn(scenes_.current());
+      if (flight_ && event.kind == servo::EventKind::kDone) {
+        flight_->learn(scenes_.current(), scenes_.shared_running(), event.tick);
+      }
     }
+    remember_faults(event);
     announcer_.announce(event, scenes_.current(), SteadyClock::now());
+  }
+
+  void remember_faults(const servo::Event& event) {
+    if (event.kind == servo::EventKind::kFaultLatched) {
+      const v1::Fault fault = to_wire(event.fault, services_.devices);
+      const std::uint64_t now = monotonic_ns();
+      const std::uint64_t number =
+          desk_.faults.add(fault, now, now + static_cast<std::uint64_t>(realtime_offset_ns()));
+      if (flight_) {
+        flight_->begin(fault, number, SteadyClock::now());
+      }
+    } else if (event.kind == servo::EventKind::kDone && event.command == servo::CommandKind::kClearFault) {
+      desk_.faults.clear();
+    }
+  }
+
+  void tell_recording(const std::vector<std::uint64_t>& faults, const std::string& path) {
+    if (path.empty()) {
+      return;
+    }
+    desk_.faults.set_recording(faults, path);
+    v1::Event event;
+    event.set_kind(v1::Event::FAULT_RECORDED);
+    event.set_tick(publisher_.latest().tick);
+    event.set_recording(path);
+    event.set_message("what came before the fault is in " + path);
+    announcer_.tell(event);
+  }
+
+  std::string make_metrics() const {
+    return metrics::exposition({.status = report_status(desk_),
+                                .devices = report_devices(desk_),
+                                .stats = report_stats(desk_),
+                                .faults = desk_.faults.counts()});
   }
 
   void broadcast(const v1::Event& event) {
@@ -265,6 +331,12 @@ class Server::Impl {
 
   void leave() {
     leaving_ = true;
+    if (flight_) {
+      flight_->finish();
+    }
+    if (metrics_) {
+      metrics_->stop();
+    }
     error_code ignored;
     for (auto& entrance : local_acceptors_) {
       entrance.acceptor.close(ignored);
@@ -298,10 +370,12 @@ class Server::Impl {
   SceneStore scenes_;
   DriveLease lease_;
   Desk desk_;
+  std::optional<FlightRecorder> flight_;
   std::list<UnixListener> listeners_;
   asio::io_context io_{1};
   std::list<Entrance<Local>> local_acceptors_;
   std::list<Entrance<Tcp>> tcp_acceptors_;
+  std::optional<MetricsServer> metrics_;
   std::vector<std::string> addresses_;
   std::map<ClientId, std::shared_ptr<Session>> sessions_;
   ClientId last_client_ = 0;
@@ -310,6 +384,7 @@ class Server::Impl {
   SteadyClock::time_point next_handshake_log_{};
   asio::steady_timer poll_timer_;
   asio::steady_timer stop_timer_;
+  SteadyClock::time_point next_flush_{};
   std::uint64_t last_stats_tick_ = 0;
   bool leaving_ = false;
 };

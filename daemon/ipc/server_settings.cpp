@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "flight/fault_files.h"
+
 namespace haptic::ipc {
 namespace {
 
@@ -28,6 +30,10 @@ ServerSettings server_settings(const v1::DaemonConfig& config) {
   settings.session.outbox.control_bytes = limits.pending_control();
   settings.drive.on_loss = config.drive().on_loss();
   settings.drive.longest_silence = milliseconds(config.drive().heartbeat());
+  settings.flight.directory = flight::directory_of(config.flight_recorder());
+  settings.flight.seconds = config.flight_recorder().seconds();
+  settings.flight.keep = config.flight_recorder().keep();
+  if (config.metrics().port() != 0) settings.metrics.emplace().port = config.metrics().port();
   return settings;
 }
 

@@ -3,9 +3,12 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "ipc/drive_lease.h"
+#include "ipc/flight_recorder.h"
+#include "ipc/metrics_server.h"
 #include "ipc/peer.h"
 #include "ipc/session_limits.h"
 
@@ -15,6 +18,8 @@ struct ServerSettings {
   std::vector<v1::Listen> listen;  // empty: a Unix socket at the default place
   SessionLimits session;
   DrivePolicy drive;
+  FlightSettings flight;
+  std::optional<MetricsSettings> metrics;  // none: not told
   std::size_t clients = 64;
   std::size_t clients_per_user = 32;
   std::chrono::milliseconds poll_period{2};        // of mailbox; 64 snapshots must not come in it

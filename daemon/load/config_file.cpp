@@ -36,6 +36,9 @@ class ConfigCheck {
     listeners();
     limits(*config_.mutable_limits());
     drive(*config_.mutable_drive());
+    flight_recorder(*config_.mutable_flight_recorder());
+    log(*config_.mutable_log());
+    metrics();
     if (!config_.scene().empty()) config_.set_scene(relative_to(file_, config_.scene()).string());
     devices(loaded);
   }
@@ -98,6 +101,31 @@ class ConfigCheck {
     }
     number("drive.heartbeat", drive.heartbeat(), 0.1, {0.01, 10.0, " s"},
            [&](double v) { drive.set_heartbeat(v); });
+  }
+
+  void flight_recorder(v1::FlightRecorder& recorder) const {
+    if (!recorder.directory().empty()) {
+      recorder.set_directory(relative_to(file_, recorder.directory()).string());
+    }
+    number("flight_recorder.seconds", recorder.seconds(), 2.0, {0.1, 60.0, " s"},
+           [&](double v) { recorder.set_seconds(v); });
+    count("flight_recorder.keep", recorder.keep(), 20, {1, 10000},
+          [&](std::uint32_t v) { recorder.set_keep(v); });
+  }
+
+  void log(v1::Log& log) const {
+    if (log.level() == v1::Log::LEVEL_UNSPECIFIED) log.set_level(v1::Log::INFO);
+    if (log.level() < v1::Log::DEBUG || log.level() > v1::Log::ERROR) {
+      source_.fail("log.level", "is no level (permitted: DEBUG, INFO, WARNING, ERROR)");
+    }
+    if (!log.file().empty()) log.set_file(relative_to(file_, log.file()).string());
+    if (log.file_bytes() == 0) return log.set_file_bytes(10'000'000);
+    check_range(source_, "log.file_bytes", static_cast<double>(log.file_bytes()), {4096, 1e12, " bytes"});
+  }
+
+  void metrics() const {
+    const std::uint32_t port = config_.metrics().port();
+    if (port != 0) check_range(source_, "metrics.port", port, {1, 65535});
   }
 
   void devices(LoadedConfig& loaded) {

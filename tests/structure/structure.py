@@ -46,11 +46,19 @@ ROOMS = {
             "daemon/load/embedded_mesh.h",
             "daemon/load/error.h",
             "daemon/load/state_message.h",
+            "daemon/flight",
+            "daemon/log/fields.h",
             "proto",
             "schema",
         ),
         libraries=("glm/", "google/protobuf/", "boost/", "spdlog/", "fmt/", "posix"),
     ),
+    # recordings of faults; knows neither sockets nor the servo thread
+    "daemon/flight": Room(
+        ours=("daemon/engine", "daemon/load/embedded_mesh.h", "proto/recording", "schema"),
+        libraries=("fmt/", "posix"),
+    ),
+    "daemon/log": Room(ours=("schema",), libraries=("spdlog/", "posix")),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/replay": Room(
         ours=("daemon/servo", "daemon/load", "daemon/engine", "daemon/safety", "drivers/device.h", "schema"),
@@ -116,6 +124,7 @@ ROOMS = {
     "proto/csv": Room(),
     "proto/device": Room(libraries=("posix",)),  # copied into programs that have nothing else of ours
     "proto/foxglove": Room(ours=("schema",)),
+    "proto/metrics": Room(ours=("schema",)),
     "proto/recording": Room(ours=("proto/foxglove", "schema"), libraries=("google/protobuf/", "posix")),
     "client/lib": Room(ours=("proto", "schema"), libraries=("google/protobuf/", "boost/", "fmt/", "posix")),
     "client/plot": Room(

@@ -43,6 +43,10 @@ class Calls(ABC):
         """How long ticks take and what the constraint does; `reset` begins to count anew afterwards."""
         return (await self.call(v1.Request(get_stats=v1.GetStats(reset=reset)))).stats
 
+    async def faults(self) -> list[v1.FaultList.FaultRecord]:
+        """The last hundred since the daemon's start, the oldest first; which are latched, where each is recorded."""
+        return list((await self.call(v1.Request(list_faults=v1.ListFaults()))).faults.fault)
+
     async def state(self) -> v1.WorldState:
         """All that a tick changes, after one tick, to the bit: where a replay can start from."""
         return (await self.call(v1.Request(get_state=v1.GetState()))).state

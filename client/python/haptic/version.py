@@ -8,7 +8,7 @@ PROTOCOL_MINOR = 0
 # what Hello.feature can name
 FEATURES = (
     "subscribe.filter", "subscribe.delivery", "subscribe.events", "replay", "device.move", "device.manage",
-    "emergency_stop")
+    "emergency_stop", "faults")
 
 # bytes; the largest message that a client accepts
 REPLY_LIMIT = 64 * 1024 * 1024

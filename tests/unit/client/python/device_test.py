@@ -122,6 +122,8 @@ class Stale(VirtualTest):
         self.assertEqual([(one.kind, one.device) for one in status.fault], [(haptic.FaultKind.STALE_SAMPLE, "mouse")])
         self.assertGreater(status.fault[0].value, 0.3)
         self.assertFalse(status.armed)
+        (record,) = await daemon.faults()
+        self.assertEqual((record.fault, record.latched, record.recording), (status.fault[0], True, ""))
         # telling it again does not bring the force back
         force = await daemon.move_device("mouse", INSIDE)
         self.assertEqual(force.wrench.force.y, 0.0)
