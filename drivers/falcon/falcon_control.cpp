@@ -15,9 +15,13 @@ constexpr Nanoseconds kMillisecond = 1'000'000;
 constexpr Nanoseconds kGreenAfterForce = 1'000 * kMillisecond;
 constexpr Nanoseconds kBlink = 200 * kMillisecond;
 
+// the box within which the kinematics are trusted, m
+constexpr glm::dvec3 kBoxLow{-0.06, -0.06, 0.07};
+constexpr glm::dvec3 kBoxHigh{0.06, 0.06, 0.18};
+
 bool is_in_box(const glm::dvec3& p) noexcept {
-  return p.x >= kTrustedLow.x && p.x <= kTrustedHigh.x && p.y >= kTrustedLow.y && p.y <= kTrustedHigh.y &&
-         p.z >= kTrustedLow.z && p.z <= kTrustedHigh.z;
+  return p.x >= kBoxLow.x && p.x <= kBoxHigh.x && p.y >= kBoxLow.y && p.y <= kBoxHigh.y && p.z >= kBoxLow.z &&
+         p.z <= kBoxHigh.z;
 }
 
 bool is_jump(const Words& from, const Words& to, Nanoseconds elapsed) noexcept {

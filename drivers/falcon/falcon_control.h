@@ -42,10 +42,6 @@ enum class Hold {
   kOutside,     // beyond the trusted box
 };
 
-/// The box within which the kinematics are trusted: device's frame, m.
-inline constexpr glm::dvec3 kTrustedLow{-0.06, -0.06, 0.07};
-inline constexpr glm::dvec3 kTrustedHigh{0.06, 0.06, 0.18};
-
 /// Good replies in a row before counts are trusted again.
 inline constexpr int kSettlingReplies = 50;
 /// The fastest change of a count that is believed, per millisecond: about 2 m/s.

@@ -20,6 +20,11 @@ constexpr std::uint16_t kVendor = 0x0403;
 constexpr std::uint16_t kProduct = 0xcb48;
 constexpr double kRateHz = 1000.0;
 
+// m, its own frame: the grip moves in about 100 mm, and on the axis out to just past z = 0.18. What lies
+// beyond this box is no grip but a count that is wrong; near its end the driver holds force back by itself.
+constexpr glm::dvec3 kReachLow{-0.08, -0.08, 0.05};
+constexpr glm::dvec3 kReachHigh{0.08, 0.08, 0.19};
+
 // in flight: two to listen, so that one is ready while the other is looked at; three to send, as a packet
 // takes up to 2 ms until its reply is there
 constexpr std::size_t kReads = 2;
@@ -186,8 +191,8 @@ std::unique_ptr<Device> make_falcon(FalconSettings settings) {
   DeviceInfo info{.name = settings.name,
                   .driver = "falcon",
                   .max_force = settings.control.max_force,
-                  .travel_min = kTrustedLow,
-                  .travel_max = kTrustedHigh};
+                  .travel_min = kReachLow,
+                  .travel_max = kReachHigh};
   const BasePose base = settings.world_from_base;
   return std::make_unique<ThreadedDevice>(std::move(info), base,
                                           std::make_unique<FalconRoutine>(std::move(settings)));

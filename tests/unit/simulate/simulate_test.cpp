@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "load/error.h"
+#include "simulate/replay_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptic::simulate {
@@ -216,6 +217,48 @@ TEST_F(Simulate, RefusesADeviceThatLivesInRealTime) {
 }
 
 // 10 mm deep after half a second of 100 N/m: 1 N; then the device is gone.
+TEST_F(Simulate, ADeviceHasTheLimitsAndTheWorkspaceOfItsConfig) {
+  folder_.write(
+      "config.txtpb",
+      "servo { rate_hz: 1000 }\n"
+      "device {\n"
+      "  name: \"probe\" simulated { mass: 0.1 hand { stiffness: 300 damping: 3 path: \"press.csv\" } }\n"
+      "  workspace { scale: 2 force_scale: 0.5 }\n"
+      "  limits { max_force: 0.1 travel { min { x: -1 y: 0.005 z: -1 } max { x: 1 y: 0.029 z: 1 } } }\n"
+      "}\n");
+  // the hand begins at 0.03 m, which is beyond 0.029 m
+  EXPECT_NE(run(0.01).find("fault at 0 s: over_travel of probe: 0.03, allowed 0.029"), std::string::npos);
+  folder_.write(
+      "config.txtpb",
+      "servo { rate_hz: 1000 }\n"
+      "device {\n"
+      "  name: \"probe\" simulated { mass: 0.1 hand { stiffness: 300 damping: 3 path: \"press.csv\" } }\n"
+      "  workspace { scale: 0.7 force_scale: 0.5 }\n"
+      "  limits { max_force: 0.1 }\n"
+      "}\n");
+  EXPECT_EQ(run(2.0).find("fault"), std::string::npos);
+  const std::vector<Row> devices = rows("devices.csv");
+  EXPECT_NEAR(std::stod(devices[0][4]), 0.7 * 0.03, 1e-12);
+  // about 0.7 * 0.01 m, which is 13 mm deep: 1.3 N in the world, 0.65 N on the hand but for its limit
+  EXPECT_NEAR(std::stod(devices.back()[11]), 0.1, 1e-12);
+}
+
+// What is recorded as the input of a tick is what lies behind the workspace, so that a replay, which has
+// none, comes to the same state.
+TEST_F(Simulate, ARunWithAWorkspaceReplaysToTheBit) {
+  folder_.write(
+      "config.txtpb",
+      "device {\n"
+      "  name: \"probe\" simulated { mass: 0.1 hand { stiffness: 300 damping: 3 path: \"press.csv\" } }\n"
+      "  workspace { scale: 0.9 force_scale: 0.7 filter { kind: ADAPTIVE_WINDOW } }\n"
+      "}\n");
+  options_.recording = folder_.file("run.mcap");
+  run(1.0);
+  std::ostringstream told;
+  EXPECT_TRUE(replay({.file = options_.recording}, told)) << told.str();
+  EXPECT_NE(told.str().find("1000 ticks"), std::string::npos) << told.str();
+}
+
 TEST_F(Simulate, TellsTheFaultThatWasInjected) {
   folder_.write("config.txtpb",
                 "device { name: \"probe\" simulated { mass: 0.1 damping: 1\n"

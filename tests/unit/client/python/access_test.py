@@ -27,6 +27,18 @@ class Drive(DaemonTest):
             await daemon.arm()
         await other.arm()
 
+    async def test_anybody_stops_in_an_emergency_while_the_lease_is_held(self) -> None:
+        daemon = await self.connect()
+        other = await self.connect()
+        async with daemon.drive(keep_armed=True):
+            await daemon.arm()
+            await other.emergency_stop()
+            status = await daemon.status()
+            self.assertFalse(status.armed)
+            self.assertEqual([one.kind for one in status.fault], [haptic.FaultKind.EMERGENCY_STOP])
+            with self.assertRaises(haptic.FaultLatched):
+                await daemon.arm()
+
     async def test_heartbeats_keep_the_lease(self) -> None:
         daemon = await self.connect()
         async with daemon.drive():

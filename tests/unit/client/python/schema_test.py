@@ -41,11 +41,13 @@ class Schema(unittest.TestCase):
             (haptic.Role, v1.Role),
             (haptic.State, v1.ConstraintState),
             (haptic.FaultKind, v1.FaultKind),
+            (haptic.LimitKind, v1.LimitKind),
             (haptic.EventKind, v1.Event.Kind),
         ]
+        prefixes: dict[type[IntEnum], str] = {haptic.FaultKind: "FAULT_", haptic.LimitKind: "LIMIT_"}
         for ours, theirs in pairs:
             names = {
-                name.removeprefix("FAULT_") if ours is haptic.FaultKind else name: number
+                name.removeprefix(prefixes.get(ours, "")): number
                 for name, number in theirs.items()
                 if not name.endswith("_UNSPECIFIED")
             }

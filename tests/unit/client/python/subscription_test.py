@@ -40,6 +40,9 @@ class Frames(DaemonTest):
         np.testing.assert_array_equal(devices.force, [[0, 0, 0]])
         np.testing.assert_array_equal(devices.present, [True])
         np.testing.assert_array_equal(devices.fault, [haptic.FaultKind.NONE])
+        np.testing.assert_array_equal(devices.acceleration, [[0, 0, 0]])
+        np.testing.assert_array_equal(devices.limits, [0])
+        np.testing.assert_array_equal(devices.energy, [0])
         np.testing.assert_array_equal(hips.index, [0])
         self.assertIsNone(frame.stats)
 
