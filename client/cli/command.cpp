@@ -67,6 +67,11 @@ CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name
   return family;
 }
 
+ExitCode complain(ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "hapticctl: %s\n", message.c_str());
+  return code;
+}
+
 void print_json(const google::protobuf::Message& message) {
   google::protobuf::util::JsonPrintOptions options;
   options.preserve_proto_field_names = true;

@@ -51,6 +51,9 @@ CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name
 /// Adds --json, and where the daemon is.
 void add_common_options(CLI::App& app, Command& command);
 
+/// Tells what is wrong on standard error; returns `code`.
+ExitCode complain(ExitCode code, const std::string& message);
+
 /// One line of JSON with the schema's field names; fields that are zero are told, too.
 void print_json(const google::protobuf::Message& message);
 

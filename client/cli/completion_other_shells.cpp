@@ -81,7 +81,7 @@ std::string fish_quoted(const std::string& text) {
   return quoted + "'";
 }
 
-std::vector<std::string> choices(const std::string& kind) {
+std::vector<std::string> words_of(const std::string& kind) {
   std::vector<std::string> words;
   std::size_t begin = 0;
   while (kind.find('|') != std::string::npos && begin <= kind.size()) {
@@ -108,7 +108,7 @@ std::string zsh_list(const std::vector<CompletedVerb>& verbs, const CompletedVer
     for (const std::string& below : verb.verbs) {
       list += " " + zsh_quoted(last_word(below) + ":" + help_of(verbs, below));
     }
-    for (const std::string& choice : choices(verb.value)) {
+    for (const std::string& choice : words_of(verb.value)) {
       list += " " + zsh_quoted(choice);
     }
   }
@@ -120,7 +120,7 @@ std::string fish_value(const std::string& kind) {
   if (has_names(kind)) {
     return fmt::format(" -a '(__hapticctl_names {})'", kind);
   }
-  const std::vector<std::string> words = choices(kind);
+  const std::vector<std::string> words = words_of(kind);
   return kind == "FILE" ? " -F" : words.empty() ? "" : fmt::format(" -a '{}'", fmt::join(words, " "));
 }
 
@@ -147,7 +147,7 @@ std::string zsh_completion(const std::vector<CompletedVerb>& verbs) {
     for (const CompletedOption& option : verb.options) {
       for (const std::string& name : option.value.empty() ? std::vector<std::string>{} : option.names) {
         text += fmt::format("    '{}/{}') kind='{}' list=({}) ;;\n", verb.path, name, option.value,
-                            fmt::join(choices(option.value), " "));
+                            fmt::join(words_of(option.value), " "));
       }
     }
   }

@@ -7,7 +7,7 @@
 namespace haptic::cli {
 namespace {
 
-constexpr double kLongest = 1e9;  // s
+constexpr double kLongestTime = 1e9;  // s
 
 // replaces the text by its seconds; returns what is wrong with it
 std::string to_seconds(std::string& text) {
@@ -20,7 +20,7 @@ std::string to_seconds(std::string& text) {
     number.pop_back();
   }
   double value = 0.0;
-  if (!read_number(number, value) || !std::isfinite(value) || value < 0.0 || value * unit > kLongest) {
+  if (!read_number(number, value) || !std::isfinite(value) || value < 0.0 || value * unit > kLongestTime) {
     return "'" + text + "' is no time: 2s, 2 or 200ms is expected";
   }
   text = fmt::format("{}", value * unit);

@@ -22,7 +22,7 @@ ExitCode print_completion(const std::string& shell) {
 }
 
 // what a person who waits for a list has patience for
-constexpr std::chrono::milliseconds kPatience{300};
+constexpr std::chrono::milliseconds kCompletionPatience{300};
 
 std::vector<std::string> names_of_kind(Command& command, const std::string& kind) {
   std::vector<std::string> names;
@@ -31,7 +31,7 @@ std::vector<std::string> names_of_kind(Command& command, const std::string& kind
       names.push_back(item.name());
     }
   };
-  client::Connection& daemon = command.connect(kPatience);
+  client::Connection& daemon = command.connect(kCompletionPatience);
   if (kind == "DEVICE") {
     const v1::Response response = call(daemon, [](v1::Request& request) { request.mutable_list_devices(); });
     for (const v1::DeviceStatus& device : response.devices().device()) {

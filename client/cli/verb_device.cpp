@@ -16,8 +16,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kLongest = 86400.0;  // s
-constexpr milliseconds kPeriod{5};    // of the poses; a quarter of the default of safety.max_sample_age
+constexpr double kLongestMove = 86400.0;  // s
+constexpr milliseconds kPosePeriod{5};    // of the poses; a quarter of the default of safety.max_sample_age
 
 struct MoveOptions {
   std::string name;
@@ -103,7 +103,7 @@ ExitCode move(Command& command, const MoveOptions& options) {
   do {
     passed = Seconds(client::Clock::now() - start).count();
     force = send_pose(daemon, options, way, options.over > 0.0 ? std::min(1.0, passed / options.over) : 1.0);
-    next += kPeriod;
+    next += kPosePeriod;
     // events are taken meanwhile, so that they do not heap up
     while (!stop_requested() && client::Clock::now() < next) {
       daemon.receive(std::chrono::ceil<milliseconds>(next - client::Clock::now()));
@@ -132,9 +132,11 @@ void add_device(CLI::App& app, Command& command) {
   add_pose_options(verb, [options](const PoseChange& change) { change(options->pose); });
   find_option(verb, "--at").required();
   add_option(verb, "--over", options->over, "straight from where it is, within so long; default: at once")
-      .between(0.0, kLongest)
+      .between(0.0, kLongestMove)
       .type("SECONDS");
-  add_option(verb, "--hold", options->hold, "stay there for so long").between(0.0, kLongest).type("SECONDS");
+  add_option(verb, "--hold", options->hold, "stay there for so long")
+      .between(0.0, kLongestMove)
+      .type("SECONDS");
   add_option(verb, "--buttons", options->buttons, "those that are down: bit n for button n").type("N");
   set_footer(
       device,

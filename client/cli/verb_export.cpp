@@ -33,11 +33,6 @@ std::uint64_t nanoseconds_of(double seconds) {
   return static_cast<std::uint64_t>(std::llround(seconds * 1e9));
 }
 
-ExitCode complain(ExitCode code, const std::string& message) {
-  std::fprintf(stderr, "hapticctl: %s\n", message.c_str());
-  return code;
-}
-
 void report(const Command& command, const ExportOptions& options,
             const std::vector<std::pair<Topic, std::uint64_t>>& tables) {
   if (!command.json) {

@@ -6,7 +6,7 @@
 namespace haptic::cli {
 namespace {
 
-void add_add(CLI::App& finger, Command& command) {
+void add_finger_add(CLI::App& finger, Command& command) {
   const auto changes = std::make_shared<Changes<v1::Finger>>();
   CLI::App& verb = add_verb(finger, command, "add", "a finger more", [changes](Command& chosen) {
     v1::SceneEdit edit;
@@ -18,7 +18,7 @@ void add_add(CLI::App& finger, Command& command) {
 
 // the message replaces all of it, so that what is not told is taken from the scene, which must not change
 // meanwhile
-void add_set(CLI::App& finger, Command& command) {
+void add_finger_set(CLI::App& finger, Command& command) {
   const auto changes = std::make_shared<Changes<v1::Finger>>();
   CLI::App& verb = add_verb(finger, command, "set", "change what it is", [changes](Command& chosen) {
     const v1::SceneDescription scene = ask_scene(chosen);
@@ -28,7 +28,7 @@ void add_set(CLI::App& finger, Command& command) {
   add_finger_options(verb, *changes, Editing::kSet);
 }
 
-void add_remove(CLI::App& finger, Command& command) {
+void add_finger_remove(CLI::App& finger, Command& command) {
   const auto name = std::make_shared<std::string>();
   CLI::App& verb = add_verb(finger, command, "remove", "a finger less", [name](Command& chosen) {
     v1::SceneEdit edit;
@@ -42,9 +42,9 @@ void add_remove(CLI::App& finger, Command& command) {
 
 void add_finger(CLI::App& app, Command& command) {
   CLI::App& finger = add_family(app, command, "finger", "add, change or remove a finger");
-  add_add(finger, command);
-  add_set(finger, command);
-  add_remove(finger, command);
+  add_finger_add(finger, command);
+  add_finger_set(finger, command);
+  add_finger_remove(finger, command);
   set_footer(
       finger,
       "hapticctl finger add thumb --device left --stiffness 100 --fingertip 0.008 0.5 --direction 0 0 1 "

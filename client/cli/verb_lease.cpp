@@ -22,7 +22,7 @@ constexpr auto kCannotRun = static_cast<ExitCode>(126);
 constexpr auto kNoProgram = static_cast<ExitCode>(127);
 constexpr int kSignalled = 128;
 
-constexpr milliseconds kLook{20};  // how often the program that runs is looked after
+constexpr milliseconds kLookAfterChild{20};  // how often the program that runs is looked after
 
 struct LeaseOptions {
   std::uint32_t heartbeat_ms = 0;
@@ -69,7 +69,7 @@ ExitCode wait(client::Connection& daemon, double seconds) {
   const auto end = client::Clock::now() + std::chrono::duration_cast<client::Clock::duration>(
                                               std::chrono::duration<double>(seconds));
   while (!stop_requested() && (seconds == 0.0 || client::Clock::now() < end)) {
-    daemon.receive(kLook);
+    daemon.receive(kLookAfterChild);
   }
   return kDone;
 }
@@ -92,7 +92,7 @@ ExitCode run_program(client::Connection& daemon, const std::vector<std::string>&
         child.tell(SIGTERM);
         is_told = true;
       }
-      daemon.receive(kLook);
+      daemon.receive(kLookAfterChild);
     }
   } catch (const client::Error&) {
     child.tell(SIGTERM);

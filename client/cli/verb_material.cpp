@@ -6,7 +6,7 @@
 namespace haptic::cli {
 namespace {
 
-void add_add(CLI::App& material, Command& command) {
+void add_material_add(CLI::App& material, Command& command) {
   const auto changes = std::make_shared<Changes<v1::Material>>();
   CLI::App& verb = add_verb(material, command, "add", "a material more", [changes](Command& chosen) {
     v1::SceneEdit edit;
@@ -18,7 +18,7 @@ void add_add(CLI::App& material, Command& command) {
 
 // the message replaces all of it, so that what is not told is taken from the scene, which must not change
 // meanwhile
-void add_set(CLI::App& material, Command& command) {
+void add_material_set(CLI::App& material, Command& command) {
   const auto changes = std::make_shared<Changes<v1::Material>>();
   CLI::App& verb = add_verb(material, command, "set", "change what it is", [changes](Command& chosen) {
     const v1::SceneDescription scene = ask_scene(chosen);
@@ -28,7 +28,7 @@ void add_set(CLI::App& material, Command& command) {
   add_material_options(verb, *changes, Editing::kSet);
 }
 
-void add_remove(CLI::App& material, Command& command) {
+void add_material_remove(CLI::App& material, Command& command) {
   const auto name = std::make_shared<std::string>();
   CLI::App& verb =
       add_verb(material, command, "remove", "a material less; refused while an object is made of it",
@@ -44,9 +44,9 @@ void add_remove(CLI::App& material, Command& command) {
 
 void add_material(CLI::App& app, Command& command) {
   CLI::App& material = add_family(app, command, "material", "add, change or remove a material");
-  add_add(material, command);
-  add_set(material, command);
-  add_remove(material, command);
+  add_material_add(material, command);
+  add_material_set(material, command);
+  add_material_remove(material, command);
   set_footer(material,
              "hapticctl material add wood --density 500 --rigid 1.0 0.5\n"
              "hapticctl material set wood --density 700");

@@ -6,7 +6,7 @@
 namespace haptic::cli {
 namespace {
 
-void add_add(CLI::App& object, Command& command) {
+void add_object_add(CLI::App& object, Command& command) {
   const auto changes = std::make_shared<Changes<v1::Object>>();
   CLI::App& verb = add_verb(object, command, "add", "an object more", [changes](Command& chosen) {
     v1::SceneEdit edit;
@@ -16,7 +16,7 @@ void add_add(CLI::App& object, Command& command) {
   add_object_options(verb, *changes, Editing::kAdd);
 }
 
-void add_remove(CLI::App& object, Command& command) {
+void add_object_remove(CLI::App& object, Command& command) {
   const auto name = std::make_shared<std::string>();
   CLI::App& verb = add_verb(object, command, "remove", "an object less", [name](Command& chosen) {
     v1::SceneEdit edit;
@@ -58,7 +58,7 @@ void add_move(CLI::App& object, Command& command) {
   });
 }
 
-void add_set(CLI::App& object, Command& command) {
+void add_object_set(CLI::App& object, Command& command) {
   const auto changes = std::make_shared<Changes<v1::Object>>();
   CLI::App& verb = add_verb(object, command, "set", "change what it is", [changes](Command& chosen) {
     const v1::SceneEdit edit = set_object_edit(*changes);
@@ -71,10 +71,10 @@ void add_set(CLI::App& object, Command& command) {
 
 void add_object(CLI::App& app, Command& command) {
   CLI::App& object = add_family(app, command, "object", "add, remove, move or change an object");
-  add_add(object, command);
-  add_remove(object, command);
+  add_object_add(object, command);
+  add_object_remove(object, command);
   add_move(object, command);
-  add_set(object, command);
+  add_object_set(object, command);
   set_footer(
       object,
       "hapticctl object add box1 --box 0.08 0.03 0.03 --inside wood --outside air --air-margin 0.02 \\\n"

@@ -30,11 +30,6 @@ struct PlotOptions {
   std::vector<unsigned> size = {720, 400};
 };
 
-ExitCode complain(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "hapticctl: {}\n", message);
-  return code;
-}
-
 bool is_of_stats(Kind kind) { return kind == Kind::kTransitions || kind == Kind::kLatency; }
 
 // what is wrong with the options together; empty: nothing

@@ -24,7 +24,7 @@ using recording::FileSink;
 constexpr std::chrono::seconds kDrain{2};
 
 // a chunk is written at least so often, and the line on the terminal
-constexpr std::chrono::milliseconds kPeriod{500};
+constexpr std::chrono::milliseconds kWritePeriod{500};
 
 struct RecordOptions {
   std::string file;
@@ -128,7 +128,7 @@ class Recorder {
 
   void record() {
     const SteadyClock::time_point start = SteadyClock::now();
-    SteadyClock::time_point next = start + kPeriod;
+    SteadyClock::time_point next = start + kWritePeriod;
     while (!is_stopped()) {
       const SteadyClock::time_point now = SteadyClock::now();
       seconds_ = std::chrono::duration<double>(now - start).count();
@@ -138,7 +138,7 @@ class Recorder {
       if (now >= next) {
         writer_->flush();
         show_progress();
-        next = now + kPeriod;
+        next = now + kWritePeriod;
       }
       if (const auto message = daemon_.receive(std::chrono::milliseconds(100))) {
         take(*message);
@@ -216,7 +216,7 @@ class Recorder {
     if (!live_) {
       return;
     }
-    constexpr double kPeriods = 1.0 / std::chrono::duration<double>(kPeriod).count();
+    constexpr double kPeriods = 1.0 / std::chrono::duration<double>(kWritePeriod).count();
     const std::uint64_t size = writer_->writer().size();
     const auto rate = static_cast<double>(counts_.frames - shown_.frames) * kPeriods;
     const auto growth = static_cast<double>(size - shown_size_) * kPeriods;

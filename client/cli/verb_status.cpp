@@ -6,7 +6,7 @@
 namespace haptic::cli {
 namespace {
 
-void line(const char* what, const std::string& value) { fmt::print("{:<13} {}\n", what, value); }
+void say(const char* what, const std::string& value) { fmt::print("{:<13} {}\n", what, value); }
 
 ExitCode show_status(Command& command) {
   client::Connection& daemon = command.connect();
@@ -16,23 +16,23 @@ ExitCode show_status(Command& command) {
     print_json(status);
     return kDone;
   }
-  line("daemon", fmt::format("hapticd {}, up {}", status.version(), duration(status.uptime())));
-  line("forces", status.armed() ? "armed" : "disarmed");
-  line("drive lease", status.has_drive_holder() ? describe(status.drive_holder()) : "free");
+  say("daemon", fmt::format("hapticd {}, up {}", status.version(), duration(status.uptime())));
+  say("forces", status.armed() ? "armed" : "disarmed");
+  say("drive lease", status.has_drive_holder() ? describe(status.drive_holder()) : "free");
   for (const v1::Fault& fault : status.fault()) {
-    line("fault", describe(fault) + "; hapticctl clear");
+    say("fault", describe(fault) + "; hapticctl clear");
   }
-  line("clock", fmt::format("{:.6g} Hz, tick {}, {} missed{}", status.rate_hz(), status.tick(),
-                            status.missed_ticks(), status.paused() ? ", PAUSED" : ""));
-  line("scene",
-       fmt::format("{} (revision {}): {}, {}, {}", status.scene().empty() ? "without a name" : status.scene(),
-                   status.scene_revision(), count_of(status.objects(), "object"),
-                   count_of(status.fingers(), "finger"), count_of(status.hips(), "HIP")));
-  line("devices", fmt::format("{}", status.devices()));
-  line("clients", fmt::format("{}", status.clients()));
-  line("real time", describe(status.real_time()));
+  say("clock", fmt::format("{:.6g} Hz, tick {}, {} missed{}", status.rate_hz(), status.tick(),
+                           status.missed_ticks(), status.paused() ? ", PAUSED" : ""));
+  say("scene",
+      fmt::format("{} (revision {}): {}, {}, {}", status.scene().empty() ? "without a name" : status.scene(),
+                  status.scene_revision(), count_of(status.objects(), "object"),
+                  count_of(status.fingers(), "finger"), count_of(status.hips(), "HIP")));
+  say("devices", fmt::format("{}", status.devices()));
+  say("clients", fmt::format("{}", status.clients()));
+  say("real time", describe(status.real_time()));
   for (const std::string& warning : status.real_time().warning()) {
-    line("", warning);
+    say("", warning);
   }
   return kDone;
 }

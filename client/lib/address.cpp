@@ -1,5 +1,9 @@
 #include "client/lib/address.h"
 
+#include <arpa/inet.h>
+
+#include <array>
+
 #include "proto/socket_path.h"
 
 namespace haptic::client {
@@ -25,6 +29,12 @@ std::string to_string(const Address& address) {
   }
   const bool is_ipv6 = address.host.find(':') != std::string::npos;
   return (is_ipv6 ? "[" + address.host + "]" : address.host) + ":" + address.port;
+}
+
+bool is_ip(const std::string& host) {
+  std::array<unsigned char, sizeof(in6_addr)> ignored{};
+  return ::inet_pton(AF_INET, host.c_str(), ignored.data()) == 1 ||
+         ::inet_pton(AF_INET6, host.c_str(), ignored.data()) == 1;
 }
 
 }  // namespace haptic::client

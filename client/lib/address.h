@@ -18,4 +18,7 @@ Address parse_address(const std::string& text);
 /// As parse_address reads it.
 std::string to_string(const Address& address);
 
+/// Whether a host is told by its IP address, not by its name.
+bool is_ip(const std::string& host);
+
 }  // namespace haptic::client

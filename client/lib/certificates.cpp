@@ -1,6 +1,5 @@
 #include "client/lib/certificates.h"
 
-#include <arpa/inet.h>
 #include <fcntl.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
@@ -17,6 +16,7 @@
 #include <memory>
 #include <string_view>
 
+#include "client/lib/address.h"
 #include "client/lib/error.h"
 
 namespace haptic::client {
@@ -53,12 +53,6 @@ void check_name(const std::string& name, std::string_view signs) {
     fail(v1::Error::INVALID, "\"" + name + "\" cannot be a name: 1 to " + std::to_string(kLongestName) +
                                  " letters, digits and " + std::string(signs) + ", the first no sign");
   }
-}
-
-bool is_ip(const std::string& name) {
-  std::array<unsigned char, sizeof(in6_addr)> ignored{};
-  return ::inet_pton(AF_INET, name.c_str(), ignored.data()) == 1 ||
-         ::inet_pton(AF_INET6, name.c_str(), ignored.data()) == 1;
 }
 
 void check_plan(const CertificatePlan& plan) {

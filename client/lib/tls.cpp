@@ -1,6 +1,5 @@
 #include "client/lib/tls.h"
 
-#include <arpa/inet.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
@@ -9,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "client/lib/address.h"
 #include "client/lib/error.h"
 
 namespace haptic::client {
@@ -39,12 +39,6 @@ void use_file(const char* what, const std::string& file, const std::function<int
   if (use(file.c_str()) != 1) {
     throw_invalid(std::string("cannot use ") + file + " as the " + what + ": " + take_reason());
   }
-}
-
-bool is_ip(const std::string& host) {
-  std::array<unsigned char, sizeof(in6_addr)> ignored{};
-  return ::inet_pton(AF_INET, host.c_str(), ignored.data()) == 1 ||
-         ::inet_pton(AF_INET6, host.c_str(), ignored.data()) == 1;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tests/compatibility/releases.h"
+#include "tests/support/places.h"
 #include "tests/support/test_daemon.h"
 
 namespace haptic::test {
@@ -26,8 +27,8 @@ TEST_P(FrozenClient, GreetsAsksSubscribesArmsAndDisarms) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
-  const std::string command = std::string(FROZEN_CLIENTS "/") + GetParam() + "/frozen_client_" + GetParam() +
-                              " " + daemon.address() + " 2>&1";
+  const std::string command = test::build_dir() + "/tests/compatibility/" + GetParam() + "/frozen_client_" +
+                              GetParam() + " " + daemon.address() + " 2>&1";
   FILE* const pipe = ::popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
   std::string output;

@@ -8,6 +8,7 @@
 #include "haptic/v1/control.pb.h"
 #include "tests/compatibility/breaking_changes.h"
 #include "tests/compatibility/releases.h"
+#include "tests/support/places.h"
 
 namespace haptic::test {
 namespace {
@@ -16,7 +17,7 @@ class FrozenSchema : public testing::TestWithParam<std::string> {};
 
 TEST_P(FrozenSchema, IsOnlyAddedTo) {
   const std::filesystem::path folder =
-      std::filesystem::path(HAPTIC_SOURCE_DIR) / "tests/compatibility" / GetParam();
+      std::filesystem::path(test::source_dir()) / "tests/compatibility" / GetParam();
   google::protobuf::compiler::DiskSourceTree tree;
   tree.MapPath("", folder.string());
   google::protobuf::compiler::Importer importer(&tree, nullptr);

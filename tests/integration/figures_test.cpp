@@ -13,6 +13,7 @@
 
 #include "simulate/simulate.h"
 #include "tests/support/csv_table.h"
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptic {
@@ -21,7 +22,7 @@ namespace {
 using glm::dvec3;
 using test::CsvTable;
 
-const std::string kConfig = std::string(HAPTIC_SOURCE_DIR) + "/config/";
+const std::string kConfig = test::source_dir() + "/config/";
 
 std::string shortest(double value) {
   char text[32];

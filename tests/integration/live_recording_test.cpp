@@ -20,13 +20,14 @@
 #include "proto/recording/session.h"
 #include "servo/servo_loop.h"
 #include "simulate/replay_file.h"
+#include "tests/support/places.h"
 #include "tests/support/servo_rig.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptic {
 namespace {
 
-const std::string kScenes = std::string(HAPTIC_SOURCE_DIR) + "/config/scenes/";
+const std::string kScenes = test::source_dir() + "/config/scenes/";
 
 v1::Response ask(client::Connection& daemon, const std::function<void(v1::Request&)>& fill) {
   v1::Request request;

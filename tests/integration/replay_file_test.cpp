@@ -14,12 +14,13 @@
 #include "proto/recording/recording.h"
 #include "proto/recording/session.h"
 #include "proto/recording/writer.h"
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptic::simulate {
 namespace {
 
-const std::string kKept = std::string(HAPTIC_SOURCE_DIR) + "/tests/data/recordings/edited.mcap";
+const std::string kKept = test::source_dir() + "/tests/data/recordings/edited.mcap";
 
 using Change = std::function<bool(const std::string& topic, std::string& data)>;  // false: leave it away
 
@@ -145,7 +146,7 @@ TEST(ReplayFile, WithoutAStateThereIsNothingToReplay) {
 
 TEST(ReplayFile, AFileThatIsNoRecordingIsToldByItsName) {
   try {
-    run(HAPTIC_SOURCE_DIR "/README.md");
+    run(test::source_dir() + "/README.md");
     FAIL() << "it was replayed";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("README.md"), std::string::npos) << error.what();

@@ -9,6 +9,7 @@
 
 #include "client/lib/certificates.h"
 #include "tests/support/nats_server.h"
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/test_daemon.h"
 
@@ -384,7 +385,7 @@ TEST_F(BridgeTls, RefusesToBeginWithoutItsFiles) {
 }
 
 test::Finished run_bridge(const std::string& arguments) {
-  return test::run_program("timeout 10 " HAPTIC_BRIDGE " " + arguments);
+  return test::run_program("timeout 10 " + test::haptic_bridge() + " " + arguments);
 }
 
 TEST(BridgeProgram, RefusesNonsenseAndNamesTheOption) {
@@ -426,7 +427,7 @@ TEST(BridgeProgram, TakesAConfigAndEndsWellOnSigterm) {
                                                "\"\nhost = \"from file\"\ntopic = [\"hips\", \"events\"]\n");
   const std::string said = daemon.folder().file("said");
   const test::Finished finished = test::run_program(
-      HAPTIC_BRIDGE " --config " + config + " --socket " + daemon.address() + " 2> " + said +
+      test::haptic_bridge() + " --config " + config + " --socket " + daemon.address() + " 2> " + said +
       " & for i in $(seq 200); do grep -q broker:.connected " + said + " && grep -q daemon:.connected " +
       said + " && break; sleep 0.1; done; kill -TERM $!; wait $!; code=$?; cat " + said + "; (exit $code)");
   EXPECT_EQ(finished.code, 0) << finished.output;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_daemon.h"
@@ -11,12 +12,13 @@ namespace {
 
 class Completion : public testing::Test {
  protected:
-  Completion() { test::run_program(std::string(HAPTICCTL) + " completion bash > " + script()); }
+  Completion() { test::run_program(test::hapticctl() + " completion bash > " + script()); }
   std::string script() const { return folder_.file("completion.bash"); }
 
   // what bash offers for the last of the words; each ends with a space
   std::string offered(const std::string& words) const {
-    return test::run_program("bash -c 'source " + script() + "; COMP_WORDS=(" + HAPTICCTL + " " + words +
+    return test::run_program("bash -c 'source " + script() + "; COMP_WORDS=(" + test::hapticctl() + " " +
+                             words +
                              "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _hapticctl; "
                              "printf \"%s \" \"${COMPREPLY[@]}\"'")
         .output;
@@ -62,7 +64,7 @@ TEST_F(Completion, SaysNothingWhenThereIsNoDaemon) {
 TEST_F(Completion, IsGoodZshAndFish) {
   for (const std::string shell : {"zsh", "fish"}) {
     const std::string other = folder_.file("completion." + shell);
-    test::run_program(std::string(HAPTICCTL) + " completion " + shell + " > " + other);
+    test::run_program(test::hapticctl() + " completion " + shell + " > " + other);
     const test::Finished read =
         test::run_program(shell + " --no-exec" + (shell == "fish" ? "ute " : " ") + other);
     EXPECT_EQ(read.code, 0) << shell;
@@ -71,13 +73,13 @@ TEST_F(Completion, IsGoodZshAndFish) {
 }
 
 TEST_F(Completion, KnowsTheOtherShells) {
-  EXPECT_NE(test::run_program(std::string(HAPTICCTL) + " completion zsh")
+  EXPECT_NE(test::run_program(test::hapticctl() + " completion zsh")
                 .output.find("'object/move') verb='object move'"),
             std::string::npos);
-  EXPECT_NE(test::run_program(std::string(HAPTICCTL) + " completion fish")
+  EXPECT_NE(test::run_program(test::hapticctl() + " completion fish")
                 .output.find("complete -c hapticctl -n '__hapticctl_at \"object move\"' -l at -r"),
             std::string::npos);
-  EXPECT_EQ(test::run_program(std::string(HAPTICCTL) + " completion tcsh").code, 64);
+  EXPECT_EQ(test::run_program(test::hapticctl() + " completion tcsh").code, 64);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "haptic/v1/control.pb.h"
+#include "tests/support/places.h"
 #include "tests/support/scripted_daemon.h"
 #include "tests/support/test_daemon.h"
 
@@ -21,7 +22,7 @@ struct Finished {
 };
 
 Finished run(const std::string& arguments) {
-  const std::string command = std::string(HAPTICCTL) + " " + arguments + " 2>&1";
+  const std::string command = test::hapticctl() + " " + arguments + " 2>&1";
   FILE* pipe = ::popen(command.c_str(), "r");
   Finished result;
   char chunk[4096];

@@ -8,6 +8,7 @@
 #include "client/export/export.h"
 #include "client/plot/curves.h"
 #include "client/plot/recorded.h"
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/session_recording.h"
 #include "tests/support/temporary_folder.h"
@@ -151,7 +152,7 @@ TEST_F(PlotRecording, TellsWhatItDoesNotHave) {
 TEST_F(PlotRecording, IsDrawnByHapticctl) {
   const std::string out = " " + file() + " -o " + folder_.file("p.svg");
   const auto plot = [&out](const std::string& kind, const std::string& options = "") {
-    return test::run_program(std::string(HAPTICCTL) + " plot " + kind + out + options);
+    return test::run_program(test::hapticctl() + " plot " + kind + out + options);
   };
   write_push();
   for (const char* const kind : {"force", "friction", "hips"}) {
@@ -180,13 +181,12 @@ TEST_F(PlotRecording, IsDrawnAsFarAsItCanBeRead) {
   const std::string bytes = folder_.read("r.mcap");
   folder_.write("r.mcap", bytes.substr(0, bytes.size() * 3 / 4));
   const test::Finished cut =
-      test::run_program(std::string(HAPTICCTL) + " plot force " + file() + " -o " + folder_.file("p.svg"));
+      test::run_program(test::hapticctl() + " plot force " + file() + " -o " + folder_.file("p.svg"));
   EXPECT_EQ(cut.code, 0);
   EXPECT_NE(cut.output.find("what could be read is drawn"), std::string::npos) << cut.output;
   folder_.write("r.mcap", bytes.substr(0, 8) + "nothing of hapticd");
   EXPECT_EQ(
-      test::run_program(std::string(HAPTICCTL) + " plot force " + file() + " -o " + folder_.file("p.svg"))
-          .code,
+      test::run_program(test::hapticctl() + " plot force " + file() + " -o " + folder_.file("p.svg")).code,
       3);
 }
 

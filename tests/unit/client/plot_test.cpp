@@ -8,6 +8,7 @@
 #include "client/lib/error.h"
 #include "client/plot/curves.h"
 #include "client/plot/forces.h"
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -203,7 +204,7 @@ TEST_F(Drawing, TellsWhatCannotBeDrawnOrWritten) {
 TEST_F(Drawing, IsAVerbOfHapticctl) {
   const std::string input = folder_.write("hips.csv", kHips);
   const std::string picture = folder_.file("p.svg");
-  const std::string plot = HAPTICCTL " plot ";
+  const std::string plot = test::hapticctl() + " plot ";
   for (const char* const kind : {"force", "friction", "hips --at 0"}) {
     const test::Finished finished = test::run_program(plot + kind + " " + input + " -o " + picture);
     EXPECT_EQ(finished.code, 0) << kind << ": " << finished.output;

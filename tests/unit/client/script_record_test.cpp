@@ -8,6 +8,7 @@
 
 #include "proto/recording/recording.h"
 #include "proto/recording/source.h"
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_daemon.h"
@@ -21,7 +22,7 @@ class ScriptRecord : public testing::Test {
  protected:
   Finished run(const std::string& script) {
     const std::string path = folder_.write("test.script", script);
-    return test::run_program(std::string(HAPTICCTL) + " --socket " + daemon_.address() + " run " + path);
+    return test::run_program(test::hapticctl() + " --socket " + daemon_.address() + " run " + path);
   }
   // of a recording that is whole
   std::uint64_t frames(const std::string& file) const {

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_daemon.h"
@@ -23,8 +24,8 @@ class ScriptRun : public testing::Test {
  protected:
   Finished run(const std::string& script, const std::string& options = "") {
     const std::string path = folder_.write("test.script", script);
-    return test::run_program(std::string(HAPTICCTL) + " --socket " + daemon_.address() + " run " + path +
-                             " " + options);
+    return test::run_program(test::hapticctl() + " --socket " + daemon_.address() + " run " + path + " " +
+                             options);
   }
   // the output, with the script's own folder left away
   std::string output(const Finished& finished) const {
@@ -151,36 +152,35 @@ TEST_F(ScriptRun, TakesVariablesFromTheCommandLine) {
 }
 
 TEST_F(ScriptRun, ReadsStandardInput) {
-  const Finished done =
-      test::run_program("printf 'echo hello\\nend\\n' | " + std::string(HAPTICCTL) + " run -");
+  const Finished done = test::run_program("printf 'echo hello\\nend\\n' | " + test::hapticctl() + " run -");
   EXPECT_EQ(done.code, 64);
   EXPECT_EQ(done.output, "standard input:2: end without for\n");
-  EXPECT_EQ(test::run_program(std::string(HAPTICCTL) + " run /nowhere.script").code, 3);
+  EXPECT_EQ(test::run_program(test::hapticctl() + " run /nowhere.script").code, 3);
 }
 
 TEST_F(ScriptRun, ExitsWithFiveWhenTheDaemonIsUnreachable) {
   const std::string path = folder_.write("test.script", "arm\n");
-  EXPECT_EQ(test::run_program(std::string(HAPTICCTL) + " --socket /nowhere/s run " + path).code, 5);
+  EXPECT_EQ(test::run_program(test::hapticctl() + " --socket /nowhere/s run " + path).code, 5);
 }
 
 TEST_F(ScriptRun, EndsWhenItIsInterrupted) {
   const std::string path = folder_.write("test.script", "echo begun\nwait 1min\necho never\n");
-  const Finished stopped = test::run_program("timeout --signal=INT --preserve-status 0.5 " +
-                                             std::string(HAPTICCTL) + " run " + path);
+  const Finished stopped =
+      test::run_program("timeout --signal=INT --preserve-status 0.5 " + test::hapticctl() + " run " + path);
   EXPECT_EQ(stopped.code, 1);
   EXPECT_EQ(output(stopped), "begun\ntest.script:2: stopped by a signal\n");
 }
 
 TEST_F(ScriptRun, ShowsTheFieldOfARefusal) {
   const Finished refused =
-      test::run_program(std::string(HAPTICCTL) + " --socket " + daemon_.address() + " gravity set 0 -2000 0");
+      test::run_program(test::hapticctl() + " --socket " + daemon_.address() + " gravity set 0 -2000 0");
   EXPECT_EQ(refused.code, 1);
   EXPECT_EQ(refused.output, "hapticctl: edit[0].set_gravity.y: -2000 is out of range\n");
 }
 
 TEST_F(ScriptRun, SavesTheSceneOnceAndReplacesItOnlyByForce) {
   const std::string path = folder_.file("saved.scene.txtpb");
-  const std::string save = std::string(HAPTICCTL) + " --socket " + daemon_.address() + " scene save " + path;
+  const std::string save = test::hapticctl() + " --socket " + daemon_.address() + " scene save " + path;
   EXPECT_EQ(test::run_program(save).code, 0);
   const Finished again = test::run_program(save);
   EXPECT_EQ(again.code, 1);

@@ -7,6 +7,7 @@
 
 #include "client/lib/connection.h"
 #include "client/lib/error.h"
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/test_daemon.h"
 
@@ -24,7 +25,7 @@ class VerbLease : public testing::Test {
   }
 
   std::string ctl(const std::string& arguments) const {
-    return std::string(HAPTICCTL) + " --socket " + daemon_->address() + " " + arguments;
+    return test::hapticctl() + " --socket " + daemon_->address() + " " + arguments;
   }
   Finished run(const std::string& arguments) const { return test::run_program(ctl(arguments)); }
 

@@ -4,6 +4,7 @@
 
 #include "client/lib/certificates.h"
 #include "ipc/tls.h"
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptic::ipc {
@@ -66,7 +67,7 @@ TEST_F(TlsFiles, MustBelongTogether) {
 
 TEST_F(TlsFiles, MustBeValidToday) {
   // made for 1 January 2020 alone
-  config_.set_authority(std::string(HAPTIC_SOURCE_DIR) + "/tests/data/expired.crt");
+  config_.set_authority(test::source_dir() + "/tests/data/expired.crt");
   const Texts found = problems();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NE(found[0].find("expired.crt is no longer valid"), std::string::npos) << found[0];

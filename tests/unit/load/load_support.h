@@ -10,10 +10,11 @@
 #include <string>
 
 #include "load/error.h"
+#include "tests/support/places.h"
 
 namespace haptic::load {
 
-inline const std::filesystem::path kSource = HAPTIC_SOURCE_DIR;
+inline const std::filesystem::path kSource = test::source_dir();
 
 /// The LoadError that `action` throws; fails the test if it throws none.
 inline LoadError error_of(const std::function<void()>& action) {

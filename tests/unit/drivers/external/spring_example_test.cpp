@@ -10,6 +10,7 @@
 
 #include "drivers/external/external_device.h"
 #include "rt/tick_clock.h"
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptic::drivers::external {
@@ -24,7 +25,7 @@ TEST(SpringExample, ServesADeviceAndFeelsItsForce) {
   const std::string path = folder.file("left.sock");
   const auto device = make_external({.name = "left", .path = path});
   device->start();
-  const std::string command = std::string(SPRING_EXAMPLE) + " " + path + " 0.6 2>&1";
+  const std::string command = test::build_dir() + "/proto/device/spring_example " + path + " 0.6 2>&1";
   const std::unique_ptr<std::FILE, Close> program(::popen(command.c_str(), "r"));
   ASSERT_TRUE(program);
 
