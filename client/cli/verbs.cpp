@@ -26,6 +26,8 @@ void add_verbs(CLI::App& app, Command& command) {
   add_pause(app, command);
   add_faults(app, command);
   add_clear(app, command);
+  add_doctor(app, command);
+  add_latency(app, command);
   add_certificates(app, command);
   add_completion(app, command);
 }

@@ -30,6 +30,8 @@ void add_export(CLI::App& app, Command& command);
 void add_replay(CLI::App& app, Command& command);
 void add_certificates(CLI::App& app, Command& command);
 void add_plot(CLI::App& app, Command& command);
+void add_doctor(CLI::App& app, Command& command);
+void add_latency(CLI::App& app, Command& command);
 
 /// All of them, in the order of the help.
 void add_verbs(CLI::App& app, Command& command);

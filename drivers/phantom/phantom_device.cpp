@@ -63,7 +63,7 @@ class PhantomRoutine final : public DeviceRoutine {
     const std::unique_ptr<Watchdog> watchdog = gives_force() ? watch() : nullptr;
     PhantomControl control({.calibration = *settings_.calibration,
                             .max_force = settings_.max_force,
-                            .reading_age = std::chrono::nanoseconds(settings_.patience).count()});
+                            .reading_age = std::chrono::nanoseconds(settings_.patience).count() / 2});
     const RegisterMask inputs = inputs_of(settings_.calibration->map);
     const RegisterMask outputs = outputs_of(settings_.calibration->map);
     Nanoseconds last = rt::monotonic_ns();

@@ -30,7 +30,7 @@ struct PhantomSettings {
   std::optional<Calibration> calibration{};  // none: neither position nor force
   double max_force = 0.0;                    // N; 0: positions only
   BasePose world_from_base{};
-  std::chrono::milliseconds patience{10};  // that a round may last
+  std::chrono::milliseconds patience{20};  // that a round may last
   std::chrono::milliseconds silence{50};   // without an interrupt, after which the card is given up
 };
 

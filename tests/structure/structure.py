@@ -135,8 +135,11 @@ ROOMS = {
         ours=("proto/csv", "proto/recording", "schema"),
         libraries=("google/protobuf/", "fmt/", "hdf5.h", "posix"),
     ),
+    # the daemon's own thread and clock: what is measured is what it would meet
+    "client/latency": Room(ours=("daemon/rt",), libraries=("fmt/",)),
+    "client/doctor": Room(ours=("schema",), libraries=("google/protobuf/", "fmt/", "posix")),
     "client/cli": Room(
-        ours=("client/lib", "client/plot", "client/export", "proto", "schema"),
+        ours=("client/lib", "client/plot", "client/export", "client/doctor", "client/latency", "proto", "schema"),
         libraries=("google/protobuf/", "boost/", "fmt/", "CLI/", "posix"),
     ),
     "client/bridge": Room(
