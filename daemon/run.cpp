@@ -1,22 +1,23 @@
 #include "daemon/run.h"
 
-#include <csignal>
-// Boost.Asio of Debian 12 needs it before
+#include <fmt/format.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <functional>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "daemon/reload.h"
 #include "daemon/scene_builder.h"
 #include "ipc/server.h"
 #include "load/config_file.h"
 #include "rt/tick_clock.h"
+#include "service/service_manager.h"
+#include "service/signals.h"
+#include "service/supervisor.h"
 #include "servo/servo_loop.h"
 #include "servo/servo_thread.h"
 #include "setup/device_set.h"
@@ -57,45 +58,6 @@ void begin_log(bool foreground) {
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(logger);
 }
-
-/// SIGINT and SIGTERM. Made before any thread, so that all inherit the mask and none is interrupted.
-class StopSignals {
- public:
-  StopSignals() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);
-  }
-
-  void wait() const {
-    int signal = 0;
-    sigwait(&signals_, &signal);
-  }
-
- private:
-  sigset_t signals_{};
-};
-
-/// Waits on a thread of its own and calls `stop` once: at the first signal, or in the end.
-class StopWaiter {
- public:
-  StopWaiter(const StopSignals& signals, std::function<void()> stop)
-      : thread_([&signals, call = std::move(stop)] {
-          signals.wait();
-          call();
-        }) {}
-  ~StopWaiter() {
-    pthread_kill(thread_.native_handle(), SIGINT);
-    thread_.join();
-  }
-  StopWaiter(const StopWaiter&) = delete;
-  StopWaiter& operator=(const StopWaiter&) = delete;
-
- private:
-  std::thread thread_;
-};
 
 std::vector<v1::DeviceDescription> describe_devices(const setup::DeviceSet& devices, double max_force) {
   std::vector<v1::DeviceDescription> descriptions;
@@ -147,20 +109,12 @@ void log_rights(const rt::RealtimeReport& report) {
   if (!report.warnings.empty()) spdlog::warn("the daemon runs without it, and ticks may be late");
 }
 
-ipc::ServerSettings server_settings(const RunOptions& options, const v1::DaemonConfig& config) {
-  ipc::ServerSettings settings = ipc::server_settings(config);
-  if (!options.socket.empty()) {
-    settings.listen.clear();
-    settings.listen.emplace_back().mutable_unix()->set_path(options.socket);
-  }
-  return settings;
-}
-
 }  // namespace
 
 void run(const RunOptions& options) {
   begin_log(options.foreground);
-  const StopSignals signals;
+  const service::Signals signals;
+  const std::vector<int> passed_sockets = service::take_passed_sockets();
 
   // what is written in files
   const load::LoadedConfig config = load::load_config(options.config);
@@ -180,8 +134,12 @@ void run(const RunOptions& options) {
   servo::ServoThread servo_thread(setup::realtime_settings(config.message.servo()), settings.rate_hz, loop);
 
   // mailbox -> clients, on this thread
+  service::Supervisor supervisor(settings.rate_hz,
+                                 fmt::format("{} devices at {} Hz", devices.names().size(), settings.rate_hz));
+  ipc::ServerSettings server_settings = settings_of(options, config.message);
+  server_settings.passed_sockets = passed_sockets;
   ipc::Server server(
-      server_settings(options, config.message),
+      std::move(server_settings),
       {.mailbox = *mailbox,
        .version = HAPTIC_VERSION,
        .rate_hz = settings.rate_hz,
@@ -192,15 +150,19 @@ void run(const RunOptions& options) {
        .build_scene = [&](const v1::LoadScene& request) { return builder.from_request(request); },
        .edit_scene = [&](const v1::EditScene& request,
                          const ipc::RunningScene& edited) { return builder.from_edit(request, edited); },
-       .place_device = places_of(devices)});
-  const StopWaiter waiter(signals, [&] {
+       .place_device = places_of(devices),
+       .on_poll = [&] { supervisor.look(rt::monotonic_ns(), servo_thread.heartbeat()); }});
+  Reloader reloader(options, config.message, server);
+  const auto reload = [&] { supervisor.reload([&] { reloader.reload(); }); };
+  const service::SignalThread waiter(signals, reload, [&] {
     spdlog::info("stopping");
+    service::tell_stopping();
     // first what a hand feels, then what a screen shows
     servo_thread.stop();
     server.stop();
   });
 
-  spdlog::info("hapticd {}: {} devices at {} Hz", HAPTIC_VERSION, devices.names().size(), settings.rate_hz);
+  spdlog::info("hapticd {}: {}", HAPTIC_VERSION, supervisor.status());
   log_rights(servo_thread.report());
   for (const std::string& address : server.addresses()) spdlog::info("listening on {}", address);
   server.run();

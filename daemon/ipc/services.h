@@ -76,6 +76,9 @@ struct Services {
 
   /// In the order of the device set; empty for a device that no client can move. io thread, never waits.
   std::vector<PlaceDevice> place_device{};
+
+  /// Called every few milliseconds while clients are served, if there is one. io thread, must not wait.
+  std::function<void()> on_poll{};
 };
 
 }  // namespace haptic::ipc

@@ -51,6 +51,7 @@ ROOMS = {
         ),
         libraries=("glm/", "google/protobuf/", "boost/", "spdlog/", "fmt/", "posix"),
     ),
+    "daemon/service": Room(libraries=("spdlog/", "posix")),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/replay": Room(
         ours=("daemon/servo", "daemon/load", "daemon/engine", "daemon/safety", "drivers/device.h", "schema"),
