@@ -1,5 +1,6 @@
 #include "daemon/run.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -7,19 +8,21 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <functional>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "daemon/reload.h"
 #include "daemon/scene_builder.h"
 #include "ipc/server.h"
 #include "load/config_file.h"
 #include "log/begin_log.h"
 #include "rt/memory_reserve.h"
 #include "rt/tick_clock.h"
+#include "service/service_manager.h"
+#include "service/signals.h"
+#include "service/supervisor.h"
 #include "servo/servo_loop.h"
 #include "servo/servo_thread.h"
 #include "setup/device_set.h"
@@ -32,46 +35,6 @@ namespace {
 constexpr std::uint64_t kFirstRevision = 1;
 // for letting go in order when memory has run out: answers and frames that wait, a log line
 constexpr std::size_t kMemoryReserve = std::size_t{16} * 1024 * 1024;
-
-/// SIGINT and SIGTERM. Made before any thread, so that all inherit the mask and none is interrupted.
-class StopSignals {
- public:
-  StopSignals() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is an error as a full disk is
-  }
-
-  void wait() const {
-    int signal = 0;
-    sigwait(&signals_, &signal);
-  }
-
- private:
-  sigset_t signals_{};
-};
-
-/// Waits on a thread of its own and calls `stop` once: at the first signal, or in the end.
-class StopWaiter {
- public:
-  StopWaiter(const StopSignals& signals, std::function<void()> stop)
-      : thread_([&signals, call = std::move(stop)] {
-          signals.wait();
-          call();
-        }) {}
-  ~StopWaiter() {
-    pthread_kill(thread_.native_handle(), SIGINT);
-    thread_.join();
-  }
-  StopWaiter(const StopWaiter&) = delete;
-  StopWaiter& operator=(const StopWaiter&) = delete;
-
- private:
-  std::thread thread_;
-};
 
 std::vector<v1::DeviceDescription> describe_devices(const setup::DeviceSet& devices,
                                                     const servo::ServoSettings& settings) {
@@ -137,20 +100,12 @@ void log_rights(const rt::RealtimeReport& report) {
   if (!report.warnings.empty()) spdlog::warn("the daemon runs without it, and ticks may be late");
 }
 
-ipc::ServerSettings server_settings(const RunOptions& options, const v1::DaemonConfig& config) {
-  ipc::ServerSettings settings = ipc::server_settings(config);
-  if (!options.socket.empty()) {
-    settings.listen.clear();
-    settings.listen.emplace_back().mutable_unix()->set_path(options.socket);
-  }
-  return settings;
-}
-
 }  // namespace
 
 void run(const RunOptions& options) {
-  const StopSignals signals;
+  const service::Signals signals;
   const rt::MemoryReserve reserve(kMemoryReserve, []() noexcept { ::kill(::getpid(), SIGTERM); });
+  const std::vector<int> passed_sockets = service::take_passed_sockets();
 
   // what is written in files
   const load::LoadedConfig config = load::load_config(options.config);
@@ -171,7 +126,11 @@ void run(const RunOptions& options) {
   servo::ServoThread servo_thread(setup::realtime_settings(config.message.servo()), settings.rate_hz, loop);
 
   // mailbox -> clients, on this thread
-  ipc::Server server(server_settings(options, config.message),
+  service::Supervisor supervisor(
+      settings.rate_hz, fmt::format("{} devices at {} Hz", devices.names().size(), settings.rate_hz));
+  ipc::ServerSettings server_settings = settings_of(options, config.message);
+  server_settings.passed_sockets = passed_sockets;
+  ipc::Server server(std::move(server_settings),
                      {.mailbox = *mailbox,
                       .version = HAPTIC_VERSION,
                       .rate_hz = settings.rate_hz,
@@ -190,15 +149,19 @@ void run(const RunOptions& options) {
                             return builder.from_edit(request, edited);
                           },
                       .place_device = places_of(devices),
-                      .keepers = keepers_of(devices)});
-  const StopWaiter waiter(signals, [&] {
+                      .keepers = keepers_of(devices),
+                      .on_poll = [&] { supervisor.look(rt::monotonic_ns(), servo_thread.heartbeat()); }});
+  Reloader reloader(options, config.message, server);
+  const auto reload = [&] { supervisor.reload([&] { reloader.reload(); }); };
+  const service::SignalThread waiter(signals, reload, [&] {
     spdlog::info("stopping");
+    service::tell_stopping();
     // first what a hand feels, then what a screen shows
     servo_thread.stop();
     server.stop();
   });
 
-  spdlog::info("hapticd {}: {} devices at {} Hz", HAPTIC_VERSION, devices.names().size(), settings.rate_hz);
+  spdlog::info("hapticd {}: {}", HAPTIC_VERSION, supervisor.status());
   log_rights(servo_thread.report());
   for (const std::string& address : server.addresses()) spdlog::info("listening on {}", address);
   server.run();

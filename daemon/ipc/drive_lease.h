@@ -36,6 +36,9 @@ class DriveLease {
 
   DriveLease(const DrivePolicy& policy, ServoLink& servo) : policy_(policy), servo_(servo) {}
 
+  /// From now on; a holder keeps the silence that was agreed.
+  void set_policy(const DrivePolicy& policy) noexcept { policy_ = policy; }
+
   std::chrono::milliseconds longest_silence() const noexcept { return policy_.longest_silence; }
 
   const std::optional<Holder>& holder() const noexcept { return holder_; }

@@ -21,13 +21,13 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/authoriser.h"
 #include "proto/socket_path.h"
 
 namespace haptic::ipc {
 namespace {
 
 constexpr int kBacklog = 64;
+constexpr const char* kAccessList = "system.posix_acl_access";
 
 std::string reason() { return std::strerror(errno); }
 
@@ -120,8 +120,26 @@ std::string default_socket_path() {
   return directory + "/hapticd.sock";
 }
 
+std::string path_of_passed(int socket) {
+  const std::string number = "descriptor " + std::to_string(socket) + " of the service manager";
+  int type = 0;
+  int listens = 0;
+  socklen_t size = sizeof(type);
+  if (::getsockopt(socket, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_STREAM ||
+      ::getsockopt(socket, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) != 0 || listens == 0) {
+    throw ListenError(number + " is no stream socket that listens");
+  }
+  sockaddr_un name{};
+  socklen_t length = sizeof(name);
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&name), &length) != 0 || name.sun_family != AF_UNIX ||
+      name.sun_path[0] == '\0') {
+    throw ListenError(number + " is no Unix socket with a path; ListenStream= must name a path");
+  }
+  return {name.sun_path, ::strnlen(name.sun_path, sizeof(name.sun_path))};
+}
+
 UnixListener::UnixListener(const v1::Listen::Unix& config)
-    : path_(config.path().empty() ? default_socket_path() : config.path()) {
+    : path_(config.path().empty() ? default_socket_path() : config.path()), is_own_(true) {
   static_cast<void>(name_of(path_));
   const std::filesystem::path directory = std::filesystem::absolute(path_).parent_path();
   if (!std::filesystem::is_directory(directory)) {
@@ -131,13 +149,25 @@ UnixListener::UnixListener(const v1::Listen::Unix& config)
   take_lock();
   remove_stale();
   bind();
-  admit(config);
+  // nobody can connect before listen(), so there is no moment in which the wrong people could
+  if (::chmod(path_.c_str(), 0660) != 0) {
+    throw ListenError("cannot set the mode of " + path_ + ": " + reason());
+  }
+  admit(Authoriser::from_config(config));
   if (::listen(socket_.get(), kBacklog) != 0) {
     throw ListenError("cannot listen on " + path_ + ": " + reason());
   }
 }
 
+UnixListener::UnixListener(const v1::Listen::Unix& config, Descriptor passed)
+    : path_(path_of_passed(passed.get())), is_own_(false), socket_(std::move(passed)) {
+  admit(Authoriser::from_config(config));
+}
+
 UnixListener::~UnixListener() {
+  if (!is_own_) {
+    return;
+  }
   // before the lock goes: a socket there is still ours
   struct stat status {};
   if (::lstat(path_.c_str(), &status) == 0 && S_ISSOCK(status.st_mode)) {
@@ -188,26 +218,23 @@ void UnixListener::bind() {
   }
 }
 
-// nobody can connect before listen(), so there is no moment in which the wrong people could
-void UnixListener::admit(const v1::Listen::Unix& config) {
-  if (::chmod(path_.c_str(), 0660) != 0) {
-    throw ListenError("cannot set the mode of " + path_ + ": " + reason());
-  }
-  const Authoriser authoriser = Authoriser::from_config(config);
+void UnixListener::admit(const Authoriser& authoriser) const {
   if (authoriser.entries().empty()) {
+    ::removexattr(path_.c_str(), kAccessList);  // of a reload before; there may be none
     return;
   }
   const std::vector<char> list = access_list(authoriser.entries());
-  if (::setxattr(path_.c_str(), "system.posix_acl_access", list.data(), list.size(), 0) == 0) {
+  if (::setxattr(path_.c_str(), kAccessList, list.data(), list.size(), 0) == 0) {
     return;
   }
   // a file system without access lists: the first group is better than none
   const std::string why = reason();
   const gid_t first = authoriser.entries().front().group;
-  const bool owned = ::chown(path_.c_str(), static_cast<uid_t>(-1), first) == 0;
+  const bool owned = is_own_ && ::chown(path_.c_str(), static_cast<uid_t>(-1), first) == 0;
   spdlog::warn("{} has no access list ({}); {}", path_, why,
-               owned ? "only the first group of listen.unix.allow can connect"
-                     : "only the user who runs hapticd can connect");
+               owned     ? "only the first group of listen.unix.allow can connect"
+               : is_own_ ? "only the user who runs hapticd can connect"
+                         : "only who has the mode of the service manager's socket on his side can connect");
 }
 
 int listen_tcp(const v1::Listen::Tcp& config) {

@@ -15,10 +15,10 @@ std::string name_of_user(uid_t user) {
 
 }  // namespace
 
-Peer local_peer(int socket, const Authoriser& authoriser, const RoleOf& instead) {
+Peer local_peer(const std::optional<PeerCredentials>& credentials, const Authoriser& authoriser,
+                const RoleOf& instead) {
   Peer peer;
   peer.refusal = "your user may not use this daemon; its config allows groups in listen.unix.allow";
-  const std::optional<PeerCredentials> credentials = peer_credentials(socket);
   if (!credentials) {
     return peer;
   }

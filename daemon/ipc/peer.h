@@ -24,7 +24,8 @@ struct Peer {
 /// Decides instead of the config, in tests.
 using RoleOf = std::function<std::optional<v1::Role>(const PeerCredentials&)>;
 
-Peer local_peer(int socket, const Authoriser& authoriser, const RoleOf& instead);
+Peer local_peer(const std::optional<PeerCredentials>& credentials, const Authoriser& authoriser,
+                const RoleOf& instead);
 
 /// The highest role of all that the names have; a name counts only if it is exactly the one of the config.
 Peer certified_peer(const std::vector<std::string>& names, const std::vector<v1::Listen::AllowName>& allow);

@@ -70,8 +70,14 @@ class Server::Impl {
           });
       flight_->learn(scenes_.current(), scenes_.shared_running(), 0);
     }
+    std::vector<Passed> passed = take(settings_.passed_sockets);
     for (const v1::Listen& listen : or_default(settings_.listen)) {
-      open(listen);
+      open(listen, passed);
+    }
+    if (!passed.empty()) {
+      throw ListenError("the service manager passes a socket at " + passed.front().path +
+                        ", but no listen.unix of the config has that path; name it there, or change " +
+                        "ListenStream= of the socket unit");
     }
     if (settings_.metrics) {
       metrics_.emplace(io_, *settings_.metrics, [this] { return make_metrics(); });
@@ -93,6 +99,24 @@ class Server::Impl {
     io_.run();
   }
 
+  // what can fail is done here, what clients see on the io thread
+  void reload(ServerSettings settings) {
+    const auto changes = std::make_shared<std::list<Change>>();
+    for (const v1::Listen& listen : or_default(settings.listen)) {
+      prepare(listen, *changes);
+    }
+    asio::post(io_, [this, changes, wanted = std::move(settings)] {
+      settings_.session = wanted.session;
+      settings_.clients = wanted.clients;
+      settings_.clients_per_user = wanted.clients_per_user;
+      lease_.set_policy(wanted.drive);
+      for (Change& change : *changes) {
+        apply(change);
+      }
+      cut_off_changed();
+    });
+  }
+
   void stop() {
     asio::post(io_, [this] { leave(); });
   }
@@ -105,17 +129,52 @@ class Server::Impl {
   struct Entrance {
     typename Protocol::acceptor acceptor;
     asio::steady_timer pause;
+    const v1::Listen listen;               // as it was opened
+    UnixListener* listener;                // of a Unix socket
     std::optional<Authoriser> authoriser;  // of a Unix socket
     std::unique_ptr<TlsContext> tls;       // of TCP; none: observing only
     std::vector<v1::Listen::AllowName> allow{};
   };
 
-  void open(const v1::Listen& listen) {
+  // what a reload gives to an entrance
+  struct Change {
+    Entrance<Local>* local = nullptr;
+    Entrance<Tcp>* tcp = nullptr;
+    std::optional<Authoriser> authoriser{};
+    std::unique_ptr<TlsContext> tls{};
+    std::vector<v1::Listen::AllowName> allow{};
+  };
+
+  struct Passed {
+    std::string path;
+    Descriptor socket;
+  };
+
+  struct Client {
+    std::shared_ptr<Session> session;
+    std::optional<v1::Role> role;
+    std::function<Peer()> assess;  // who it is by the rules of now
+  };
+
+  static std::vector<Passed> take(const std::vector<int>& sockets) {
+    std::vector<Passed> passed;
+    passed.reserve(sockets.size());
+    for (const int socket : sockets) {
+      passed.push_back({"", Descriptor(socket)});
+    }
+    for (Passed& each : passed) {
+      each.path = path_of_passed(each.socket.get());
+    }
+    return passed;
+  }
+
+  void open(const v1::Listen& listen, std::vector<Passed>& passed) {
     if (listen.has_tcp()) {
       const int socket = listen_tcp(listen.tcp());
       const auto family = listen.tcp().address().find(':') == std::string::npos ? Tcp::v4() : Tcp::v6();
-      Entrance<Tcp>& entrance = tcp_acceptors_.emplace_back(
-          Entrance<Tcp>{Tcp::acceptor(io_, family, socket), asio::steady_timer(io_), std::nullopt, nullptr});
+      Entrance<Tcp>& entrance = tcp_acceptors_.emplace_back(Entrance<Tcp>{Tcp::acceptor(io_, family, socket),
+                                                                          asio::steady_timer(io_), listen,
+                                                                          nullptr, std::nullopt, nullptr});
       if (listen.tcp().has_tls()) {
         entrance.tls = std::make_unique<TlsContext>(listen.tcp().tls());
         entrance.allow.assign(listen.tcp().allow().begin(), listen.tcp().allow().end());
@@ -125,10 +184,61 @@ class Server::Impl {
       return;
     }
     Authoriser authoriser = authorise(listen.unix());
-    UnixListener& listener = listeners_.emplace_back(listen.unix());
+    UnixListener& listener = listen_unix(listen.unix(), passed);
     local_acceptors_.push_back({Local::acceptor(io_, Local(), listener.release()), asio::steady_timer(io_),
-                                std::move(authoriser), nullptr});
+                                listen, &listener, std::move(authoriser), nullptr});
     addresses_.push_back(listener.path());
+  }
+
+  UnixListener& listen_unix(const v1::Listen::Unix& config, std::vector<Passed>& passed) {
+    const std::string path = config.path().empty() && !passed.empty() ? default_socket_path() : config.path();
+    const auto found =
+        std::find_if(passed.begin(), passed.end(), [&](const Passed& each) { return each.path == path; });
+    if (found == passed.end()) {
+      return listeners_.emplace_back(config);
+    }
+    UnixListener& listener = listeners_.emplace_back(config, std::move(found->socket));
+    passed.erase(found);
+    return listener;
+  }
+
+  void prepare(const v1::Listen& listen, std::list<Change>& changes) {
+    for (Entrance<Local>& entrance : local_acceptors_) {
+      if (!listen.has_tcp() && entrance.listen.unix().path() == listen.unix().path()) {
+        changes.push_back({.local = &entrance, .authoriser = authorise(listen.unix())});
+      }
+    }
+    const v1::Listen::Tcp& tcp = listen.tcp();
+    for (Entrance<Tcp>& entrance : tcp_acceptors_) {
+      const v1::Listen::Tcp& opened = entrance.listen.tcp();
+      if (listen.has_tcp() && tcp.has_tls() && opened.has_tls() && opened.address() == tcp.address() &&
+          opened.port() == tcp.port()) {
+        changes.push_back({.tcp = &entrance,
+                           .tls = std::make_unique<TlsContext>(tcp.tls()),
+                           .allow = {tcp.allow().begin(), tcp.allow().end()}});
+      }
+    }
+  }
+
+  static void apply(Change& change) {
+    if (change.local != nullptr) {
+      change.local->authoriser = std::move(change.authoriser);
+      change.local->listener->admit(*change.local->authoriser);
+    } else {
+      change.tcp->tls = std::move(change.tls);
+      change.tcp->allow = std::move(change.allow);
+    }
+  }
+
+  void cut_off_changed() {
+    for (const auto& [id, client] : sessions_) {
+      const Peer peer = client.assess();
+      if (peer.role != client.role) {
+        spdlog::info("{} is cut off: its role has changed", peer.name);
+        client.session->cut_off(
+            make_error(v1::Error::REFUSED, "what you may do has changed; connect again to go on"));
+      }
+    }
   }
 
   static Authoriser authorise(const v1::Listen::Unix& config) {
@@ -164,14 +274,16 @@ class Server::Impl {
   template <class Protocol>
   void receive(Stream::Socket socket, Entrance<Protocol>& entrance) {
     if (entrance.authoriser) {
-      Peer peer = local_peer(socket.native_handle(), *entrance.authoriser, settings_.role_of);
-      welcome(make_plain_stream(std::move(socket)), std::move(peer));
+      const std::optional<PeerCredentials> credentials = peer_credentials(socket.native_handle());
+      welcome(make_plain_stream(std::move(socket)), [this, &entrance, credentials] {
+        return local_peer(credentials, *entrance.authoriser, settings_.role_of);
+      });
       return;
     }
     error_code ignored;
     socket.set_option(Tcp::no_delay(true), ignored);
     if (!entrance.tls) {
-      welcome(make_plain_stream(std::move(socket)), unknown_peer());
+      welcome(make_plain_stream(std::move(socket)), unknown_peer);
       return;
     }
     if (handshakes_ >= settings_.clients) {
@@ -183,7 +295,8 @@ class Server::Impl {
       if (!peer.stream) {
         tell_seldom(next_handshake_log_, "a client over TLS did not get in: " + error);
       } else if (!leaving_) {
-        welcome(std::move(peer.stream), certified_peer(peer.names, entrance.allow));
+        welcome(std::move(peer.stream),
+                [&entrance, names = peer.names] { return certified_peer(names, entrance.allow); });
       }
     };
     entrance.tls->handshake(std::move(socket), settings_.session.hello, on_peer);
@@ -198,15 +311,19 @@ class Server::Impl {
     }
   }
 
-  void welcome(std::shared_ptr<Stream> stream, Peer peer) {
+  void welcome(std::shared_ptr<Stream> stream, std::function<Peer()> assess) {
     const ClientId id = ++last_client_;
+    Peer peer = assess();
     const std::string user = peer.user;
+    const std::optional<v1::Role> role = peer.role;
     const auto session = std::make_shared<Session>(id, std::move(stream), std::move(peer), settings_.session,
                                                    desk_, [this](ClientId ended) { forget(ended); });
-    sessions_.emplace(id, session);
+    sessions_.emplace(id, Client{session, role, std::move(assess)});
     session->start();
-    const auto of_user = static_cast<std::size_t>(std::count_if(
-        sessions_.begin(), sessions_.end(), [&](const auto& entry) { return entry.second->user() == user; }));
+    const auto of_user =
+        static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), [&](const auto& entry) {
+          return entry.second.session->user() == user;
+        }));
     if (sessions_.size() > settings_.clients) {
       session->cut_off(make_error(v1::Error::BUSY, std::to_string(settings_.clients) +
                                                        " clients are connected, and no more are taken"));
@@ -244,6 +361,9 @@ class Server::Impl {
     if (now >= next_flush_) {
       spdlog::default_logger()->flush();  // tells of lines that were held back
       next_flush_ = now + kFlushPeriod;
+    }
+    if (services_.on_poll) {
+      services_.on_poll();
     }
     poll_timer_.expires_after(settings_.poll_period);
     poll_timer_.async_wait([this](const error_code& error) {
@@ -315,16 +435,16 @@ class Server::Impl {
     *envelope.mutable_event() = event;
     std::string bytes;
     proto::append_frame(envelope, bytes);
-    for (const auto& [id, session] : sessions_) {
-      session->tell(bytes);
+    for (const auto& [id, client] : sessions_) {
+      client.session->tell(bytes);
     }
     publisher_.publish(event);
   }
 
   std::size_t count_clients() const {
     std::size_t count = 0;
-    for (const auto& [id, session] : sessions_) {
-      count += session->is_serving() ? 1U : 0U;
+    for (const auto& [id, client] : sessions_) {
+      count += client.session->is_serving() ? 1U : 0U;
     }
     return count;
   }
@@ -350,8 +470,8 @@ class Server::Impl {
       io_.stop();
       return;
     }
-    for (const auto& [id, session] : sessions_) {
-      session->cut_off(make_error(v1::Error::FAILED, "hapticd stops"));
+    for (const auto& [id, client] : sessions_) {
+      client.session->cut_off(make_error(v1::Error::FAILED, "hapticd stops"));
     }
     stop_timer_.expires_after(settings_.session.goodbye * 2);
     stop_timer_.async_wait([this](const error_code& error) {
@@ -377,7 +497,7 @@ class Server::Impl {
   std::list<Entrance<Tcp>> tcp_acceptors_;
   std::optional<MetricsServer> metrics_;
   std::vector<std::string> addresses_;
-  std::map<ClientId, std::shared_ptr<Session>> sessions_;
+  std::map<ClientId, Client> sessions_;
   ClientId last_client_ = 0;
   std::size_t handshakes_ = 0;  // of TLS, under way
   SteadyClock::time_point next_accept_log_{};
@@ -393,6 +513,7 @@ Server::Server(ServerSettings settings, Services services)
     : impl_(std::make_unique<Impl>(std::move(settings), std::move(services))) {}
 Server::~Server() = default;
 void Server::run() { impl_->run(); }
+void Server::reload(ServerSettings settings) { impl_->reload(std::move(settings)); }
 void Server::stop() { impl_->stop(); }
 const std::vector<std::string>& Server::addresses() const noexcept { return impl_->addresses(); }
 

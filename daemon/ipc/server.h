@@ -23,6 +23,13 @@ class Server {
   /// Serves on the calling thread, the io thread, until stop().
   void run();
 
+  /// Takes over who may come in and do what, certificates, limits and the policy of the drive lease; the
+  /// limits of one client hold for those who connect from now on, and a client whose role is another one now
+  /// is cut off. Listeners are told by their address; one that the settings do not name keeps what it has,
+  /// and none is opened or closed. Throws ListenError in words, and then nothing is changed. Any thread but
+  /// the io thread.
+  void reload(ServerSettings settings);
+
   /// Says goodbye to all clients and ends run(). Any thread; safe before run().
   void stop();
 

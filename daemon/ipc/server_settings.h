@@ -15,7 +15,8 @@
 namespace haptic::ipc {
 
 struct ServerSettings {
-  std::vector<v1::Listen> listen;  // empty: a Unix socket at the default place
+  std::vector<v1::Listen> listen;   // empty: a Unix socket at the default place
+  std::vector<int> passed_sockets;  // that the service manager opened; each is for the entry of its path
   SessionLimits session;
   DrivePolicy drive;
   FlightSettings flight;

@@ -86,6 +86,9 @@ struct Services {
   std::vector<PlaceDevice> place_device{};
   /// In the order of the device set; none: the devices are computed, and always there.
   std::vector<DeviceKeeper> keepers{};
+
+  /// Called every few milliseconds while clients are served, if there is one. io thread, must not wait.
+  std::function<void()> on_poll{};
 };
 
 }  // namespace haptic::ipc

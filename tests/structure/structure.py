@@ -59,6 +59,7 @@ ROOMS = {
         libraries=("fmt/", "posix"),
     ),
     "daemon/log": Room(ours=("schema",), libraries=("spdlog/", "posix")),
+    "daemon/service": Room(libraries=("spdlog/", "posix")),
     "daemon/setup": Room(ours=("daemon/servo", "daemon/rt", "daemon/load", "drivers", "schema")),
     "daemon/replay": Room(
         ours=("daemon/servo", "daemon/load", "daemon/engine", "daemon/safety", "drivers/device.h", "schema"),

@@ -111,6 +111,7 @@ class TestDaemon {
 
   FakeServo& servo() noexcept { return servo_; }
   servo::Mailbox& mailbox() noexcept { return *mailbox_; }
+  ipc::Server& server() noexcept { return *server_; }
   const std::string& address() const noexcept { return server_->addresses().front(); }
   const TemporaryFolder& folder() const noexcept { return folder_; }
 

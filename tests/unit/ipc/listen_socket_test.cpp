@@ -1,5 +1,6 @@
 #include "ipc/listen_socket.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -120,6 +121,53 @@ TEST_F(UnixListenerTest, RemovesItsSocketInTheEnd) {
   { const UnixListener listener(at(path_)); }
   EXPECT_NE(::access(path_.c_str(), F_OK), 0);
   const UnixListener again(at(path_));
+}
+
+TEST_F(UnixListenerTest, TakesThePassedSocketOfItsPathAndLeavesTheFileToTheManager) {
+  ASSERT_EQ(::chmod(folder_.file("").c_str(), 0755), 0);
+  const int passed = foreign_socket(path_);
+  ASSERT_EQ(::chmod(path_.c_str(), 0600), 0);
+  {
+    UnixListener listener(at(path_), Descriptor(passed));
+    EXPECT_EQ(listener.path(), path_);
+    EXPECT_EQ(listener.release(), passed);
+    ::close(passed);
+  }
+  struct stat status {};
+  ASSERT_EQ(::stat(path_.c_str(), &status), 0);  // no file is removed, and its mode is the manager's
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+  EXPECT_NE(::access((path_ + ".lock").c_str(), F_OK), 0);
+}
+
+TEST_F(UnixListenerTest, AdmitsOtherGroupsLater) {
+  UnixListener listener(at(path_));
+  const auto entries = [&] { return ::getxattr(path_.c_str(), "system.posix_acl_access", nullptr, 0); };
+  listener.admit(Authoriser(::geteuid(), {{1, v1::OBSERVE}}));
+  if (entries() < 0) {
+    GTEST_SKIP() << "/tmp has no access lists";
+  }
+  EXPECT_EQ(entries(), 4 + 5 * 8);
+  listener.admit(Authoriser(::geteuid(), {{1, v1::OBSERVE}, {3, v1::DRIVE}}));
+  EXPECT_EQ(entries(), 4 + 6 * 8);
+  listener.admit(Authoriser(::geteuid(), {}));
+  EXPECT_LT(entries(), 0);
+  struct stat status {};
+  ASSERT_EQ(::stat(path_.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0660U);
+}
+
+TEST_F(UnixListenerTest, RefusesAPassedDescriptorThatIsNoListeningUnixSocketInWords) {
+  const int file = ::open(folder_.write("file", "").c_str(), O_RDONLY);
+  EXPECT_TRUE(contains(error_of([&] { path_of_passed(file); }), "is no stream socket that listens"));
+  ::close(file);
+  const int silent = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  EXPECT_TRUE(contains(error_of([&] { path_of_passed(silent); }), "is no stream socket that listens"));
+  ::close(silent);
+  v1::Listen::Tcp loopback;
+  loopback.set_address("127.0.0.1");
+  const int tcp = listen_tcp(loopback);
+  EXPECT_TRUE(contains(error_of([&] { path_of_passed(tcp); }), "is no Unix socket with a path"));
+  ::close(tcp);
 }
 
 TEST(DefaultSocketPath, IsMadePrivateWhereThereIsNoRuntimeDirectory) {
