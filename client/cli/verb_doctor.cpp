@@ -131,16 +131,16 @@ ExitCode examine(const Command& command, const DoctorOptions& options) {
 
 void add_doctor(CLI::App& app, Command& command) {
   const auto options = std::make_shared<DoctorOptions>();
-  CLI::App* verb =
+  CLI::App& verb =
       add_verb(app, command, "doctor",
                "explain what keeps devices from being opened or ticks from being on time, and how to mend it",
                [options](const Command& chosen) { return examine(chosen, *options); });
-  verb->add_option("--config", options->config,
-                   "the daemon's config; default: of the daemon that runs, else /etc/hapticd/hapticd.txtpb")
-      ->type_name("FILE");
-  verb->add_option("--user", options->user,
-                   "who runs the daemon; default: hapticd if there is such a user, else you")
-      ->type_name("NAME");
+  add_option(verb, "--config", options->config,
+             "the daemon's config; default: of the daemon that runs, else /etc/hapticd/hapticd.txtpb")
+      .type("FILE");
+  add_option(verb, "--user", options->user,
+             "who runs the daemon; default: hapticd if there is such a user, else you")
+      .type("NAME");
 }
 
 }  // namespace haptic::cli

@@ -17,7 +17,7 @@ constexpr std::size_t kBarWidth = 40;
 struct LatencyOptions {
   double seconds = 60.0;
   double rate_hz = 1000.0;
-  int priority = 80;
+  std::uint32_t priority = 80;
   std::optional<unsigned> cpu;
   bool awake = false;
 };
@@ -92,7 +92,7 @@ ExitCode measure_latency(const Command& command, const LatencyOptions& options) 
   const latency::Settings settings{
       .rate_hz = options.rate_hz,
       .duration = std::chrono::duration<double>(options.seconds),
-      .thread = {.priority = options.priority, .cpu = options.cpu, .lock_memory = true},
+      .thread = {.priority = static_cast<int>(options.priority), .cpu = options.cpu, .lock_memory = true},
       .awake = options.awake};
   try {
     const latency::Measured measured = latency::measure(settings, [] { return stop_requested(); });
@@ -112,21 +112,23 @@ ExitCode measure_latency(const Command& command, const LatencyOptions& options) 
 
 void add_latency(CLI::App& app, Command& command) {
   const auto options = std::make_shared<LatencyOptions>();
-  CLI::App* verb =
+  CLI::App& verb =
       add_verb(app, command, "latency", "measure how late a real-time thread wakes up on this machine",
                [options](const Command& chosen) { return measure_latency(chosen, *options); });
-  verb->add_option("--seconds", options->seconds, "how long; a signal ends it before; default: 60")
-      ->check(CLI::Range(0.01, 1e6).description(""))
-      ->type_name("SECONDS");
-  verb->add_option("--rate", options->rate_hz, "wake-ups in a second; default: 1000")
-      ->check(CLI::Range(100.0, 8000.0).description(""))
-      ->type_name("HZ");
-  verb->add_option("--priority", options->priority, "of SCHED_FIFO; default: 80, the servo thread's")
-      ->check(CLI::Range(1, 99).description(""))
-      ->type_name("1..99");
-  verb->add_option("--cpu", options->cpu, "the core that it is bound to; default: any")->type_name("NUMBER");
-  verb->add_flag("--awake", options->awake,
-                 "hold cores out of deep sleep meanwhile, as the daemon does while it is armed");
+  add_option(verb, "--seconds", options->seconds, "how long; a signal ends it before; default: 60")
+      .between(0.01, 1e6)
+      .type("SECONDS");
+  add_option(verb, "--rate", options->rate_hz, "wake-ups in a second; default: 1000")
+      .between(100.0, 8000.0)
+      .type("HZ");
+  add_option(verb, "--priority", options->priority, "of SCHED_FIFO; default: 80, the servo thread's")
+      .between(std::uint32_t{1}, std::uint32_t{99})
+      .type("1..99");
+  add_count(verb, "--cpu", "the core that it is bound to; default: any", [options](std::uint32_t cpu) {
+    options->cpu = cpu;
+  }).type("NUMBER");
+  add_flag(verb, "--awake", options->awake,
+           "hold cores out of deep sleep meanwhile, as the daemon does while it is armed");
 }
 
 }  // namespace haptic::cli
