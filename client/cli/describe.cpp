@@ -37,6 +37,8 @@ std::string describe(v1::FaultKind kind) {
       return "missed ticks";
     case v1::FAULT_LOST_DRIVER:
       return "lost driver";
+    case v1::FAULT_LOST_DEVICE:
+      return "lost device";
     default:
       return fmt::format("fault {}", static_cast<int>(kind));
   }
@@ -50,6 +52,27 @@ std::string describe(const v1::Fault& fault) {
     text += fmt::format(", {:.3g}{} where {:.3g}{} is allowed", fault.value(), unit, fault.limit(), unit);
   }
   return text + fmt::format(" (tick {})", fault.tick());
+}
+
+std::string describe(v1::DevicePhase phase) {
+  switch (phase) {
+    case v1::DEVICE_ABSENT:
+      return "absent";
+    case v1::DEVICE_FOUND:
+      return "found";
+    case v1::DEVICE_OPENING:
+      return "opening";
+    case v1::DEVICE_HOMING:
+      return "homing";
+    case v1::DEVICE_READY:
+      return "ready";
+    case v1::DEVICE_ARMED:
+      return "armed";
+    case v1::DEVICE_FAULT:
+      return "fault";
+    default:
+      return fmt::format("phase {}", static_cast<int>(phase));
+  }
 }
 
 std::string describe(const v1::RealTime& real_time) {
@@ -85,6 +108,8 @@ std::string describe(v1::Event::Kind kind) {
       return "scene changed";
     case v1::Event::TICKS_MISSED:
       return "ticks missed";
+    case v1::Event::DEVICE_CHANGED:
+      return "device changed";
     default:
       return fmt::format("event {}", static_cast<int>(kind));
   }

@@ -18,7 +18,7 @@ const std::map<std::string, v1::Role>& expected_roles() {
       {"step", v1::SCRIPT},         {"get_stats", v1::OBSERVE},    {"subscribe", v1::OBSERVE},
       {"unsubscribe", v1::OBSERVE}, {"clear_fault", v1::ADMIN},    {"edit_scene", v1::SCRIPT},
       {"acquire_drive", v1::DRIVE}, {"release_drive", v1::DRIVE},  {"heartbeat", v1::DRIVE},
-      {"move_device", v1::DRIVE},   {"get_state", v1::OBSERVE}};
+      {"move_device", v1::DRIVE},   {"get_state", v1::OBSERVE},    {"manage_device", v1::DRIVE}};
   return kRoles;
 }
 
