@@ -50,6 +50,8 @@ std::string describe(v1::FaultKind kind) {
       return "emergency stop";
     case v1::FAULT_STILL_SAMPLE:
       return "still sample";
+    case v1::FAULT_LOST_DEVICE:
+      return "lost device";
     default:
       return fmt::format("fault {}", static_cast<int>(kind));
   }
@@ -63,6 +65,27 @@ std::string describe(const v1::Fault& fault) {
     text += fmt::format(", {:.3g}{} where {:.3g}{} is allowed", fault.value(), unit, fault.limit(), unit);
   }
   return text + fmt::format(" (tick {})", fault.tick());
+}
+
+std::string describe(v1::DevicePhase phase) {
+  switch (phase) {
+    case v1::DEVICE_ABSENT:
+      return "absent";
+    case v1::DEVICE_FOUND:
+      return "found";
+    case v1::DEVICE_OPENING:
+      return "opening";
+    case v1::DEVICE_HOMING:
+      return "homing";
+    case v1::DEVICE_READY:
+      return "ready";
+    case v1::DEVICE_ARMED:
+      return "armed";
+    case v1::DEVICE_FAULT:
+      return "fault";
+    default:
+      return fmt::format("phase {}", static_cast<int>(phase));
+  }
 }
 
 std::string describe(const v1::RealTime& real_time) {
@@ -100,6 +123,8 @@ std::string describe(v1::Event::Kind kind) {
       return "ticks missed";
     case v1::Event::FAULT_RECORDED:
       return "fault recorded";
+    case v1::Event::DEVICE_CHANGED:
+      return "device changed";
     default:
       return fmt::format("event {}", static_cast<int>(kind));
   }

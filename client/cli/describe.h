@@ -11,6 +11,7 @@ namespace haptic::cli {
 std::string describe(v1::FaultKind kind);
 /// "left: over speed, 2.31 m/s where 2 m/s is allowed (tick 12345)"
 std::string describe(const v1::Fault& fault);
+std::string describe(v1::DevicePhase phase);
 std::string describe(const v1::RealTime& real_time);
 std::string describe(v1::Event::Kind kind);
 /// "user ada (process 12), hapticctl: a heartbeat within 100 ms, the last one 21 ms ago"

@@ -6,9 +6,9 @@
 namespace haptic::cli {
 
 void add_status(CLI::App& app, Command& command);
-void add_devices(CLI::App& app, Command& command);
-void add_device(CLI::App& app, Command& command);  // move
-void add_scene(CLI::App& app, Command& command);   // show, load, save, reset
+void add_devices(CLI::App& app, Command& command);  // list, show, identify, calibrate, home, reopen
+void add_device(CLI::App& app, Command& command);   // move
+void add_scene(CLI::App& app, Command& command);    // show, load, save, reset
 void add_objects(CLI::App& app, Command& command);
 void add_fingers(CLI::App& app, Command& command);
 void add_object(CLI::App& app, Command& command);    // add, remove, move, set

@@ -241,6 +241,20 @@ TEST_F(Hapticctl, ListsDevicesWithTheirFingers) {
   EXPECT_TRUE(contains(ctl("devices --json").output, R"("driver":"simulated")"));
 }
 
+TEST_F(Hapticctl, ShowsAndManagesOneDevice) {
+  serve();
+  EXPECT_EQ(ctl("devices list").output, ctl("devices").output);
+  const Finished shown = ctl("devices show left");
+  EXPECT_EQ(shown.code, 0);
+  EXPECT_TRUE(contains(shown.output, "simulated")) << shown.output;
+  EXPECT_TRUE(contains(ctl("devices show left --json").output, R"("driver":"simulated")"));
+  EXPECT_EQ(ctl("devices show nobody").code, 3);
+  EXPECT_EQ(ctl("devices reopen nobody").code, 3);
+  const Finished refused = ctl("devices reopen left");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_TRUE(contains(refused.output, "does not know how to reopen")) << refused.output;
+}
+
 TEST_F(Hapticctl, ShowsAndLoadsScenes) {
   serve();
   EXPECT_TRUE(contains(ctl("scene show").output, "block"));

@@ -129,5 +129,39 @@ class Stale(VirtualTest):
         self.assertEqual(force.wrench.force.y, 0.0)
 
 
+class Life(DaemonTest):
+    def make_listen(self) -> str:
+        # a port that no machine has: whatever is plugged in, this device is absent
+        return super().make_listen() + ' device { name: "head" fastrak { port: "/dev/no-such-port" } }'
+
+    async def test_the_daemon_starts_without_its_hardware_and_tells_why_it_is_not_there(self) -> None:
+        daemon = await self.connect()
+        async with asyncio.timeout(PATIENCE):
+            while "no such port" not in (head := (await daemon.devices())[1]).reason:
+                await asyncio.sleep(0.01)
+        self.assertEqual(head.phase, haptic.DevicePhase.ABSENT)
+        self.assertEqual((head.serial, head.losses, head.present), ("", 0, False))
+
+    async def test_frames_tell_phases(self) -> None:
+        daemon = await self.connect()
+        await daemon.arm()
+        async with daemon.subscribe([haptic.Topic.DEVICES]) as frames:
+            async for frame in frames:
+                assert frame.devices is not None
+                phases = list(frame.devices.phase)
+                if phases == [haptic.DevicePhase.ARMED, haptic.DevicePhase.ABSENT]:
+                    break
+
+    async def test_it_is_managed_by_name(self) -> None:
+        daemon = await self.connect()
+        await daemon.manage_device("head", haptic.DeviceAction.REOPEN)
+        with self.assertRaises(haptic.Unsupported):
+            await daemon.manage_device("head", haptic.DeviceAction.HOME)
+        with self.assertRaises(haptic.Unsupported):
+            await daemon.manage_device("probe", haptic.DeviceAction.REOPEN)
+        with self.assertRaises(haptic.NotFound):
+            await daemon.manage_device("nobody", haptic.DeviceAction.REOPEN)
+
+
 if __name__ == "__main__":
     unittest.main()
