@@ -2,7 +2,7 @@
 // What a line of the log says to machines beside its words, for the journal: journalctl
 // HAPTICD_FAULT=over_speed
 //
-//     const log::Fields fields({{"HAPTICD_TICK", "12345"}, {"HAPTICD_DEVICE", "left"}});
+//     const log::Fields fields(log::FieldList{{"HAPTICD_TICK", "12345"}, {"HAPTICD_DEVICE", "left"}});
 //     spdlog::warn("...");
 //
 // Names are capital letters, digits and "_", and begin with a letter. Each thread has its own.

@@ -13,7 +13,7 @@ namespace haptic::metrics {
 
 namespace {
 
-constexpr double kSecondsPerNanosecond = 1e-9;
+constexpr double kNanosecondsPerSecond = 1e9;  // to divide by: 4095 / 1e9 is 4.095e-06, 4095 * 1e-9 is not
 
 // Bins of the daemon's histograms end at these, so that no count is split: 2^n - 1 ns, from 1 us to 0.5 s.
 constexpr int kFirstPower = 10;
@@ -91,10 +91,10 @@ class Page {
     for (int power = kFirstPower; power <= kLastPower; ++power) {
       const std::uint64_t upper_ns = (std::uint64_t{1} << static_cast<unsigned>(power)) - 1;
       for (; bin < bins && histogram.upper_ns(bin) <= upper_ns; ++bin) below += histogram.count(bin);
-      add_bucket(to_text(static_cast<double>(upper_ns) * kSecondsPerNanosecond), below);
+      add_bucket(to_text(static_cast<double>(upper_ns) / kNanosecondsPerSecond), below);
     }
     add_bucket("+Inf", histogram.total());
-    const double sum = histogram.mean_ns() * static_cast<double>(histogram.total()) * kSecondsPerNanosecond;
+    const double sum = histogram.mean_ns() * static_cast<double>(histogram.total()) / kNanosecondsPerSecond;
     if (label == nullptr) {
       add(sum, {}, "_sum");
       add(histogram.total(), {}, "_count");

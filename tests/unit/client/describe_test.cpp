@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "client/cli/advice.h"
+
 namespace haptic::cli {
 namespace {
 
@@ -32,6 +36,15 @@ TEST(Describe, TellsAFaultWithItsNumbers) {
   fault.set_value(2.314);
   fault.set_limit(2.0);
   EXPECT_EQ(describe(fault), "left: over speed, 2.31 m/s where 2 m/s is allowed (tick 9)");
+}
+
+TEST(Describe, TellsWhatToDoAboutEachFaultOfTheSchema) {
+  std::set<std::string> told;
+  for (int kind = v1::FAULT_NONE + 1; kind <= v1::FaultKind_MAX; ++kind) {
+    told.insert(advise(static_cast<v1::FaultKind>(kind)));
+  }
+  EXPECT_EQ(told.size(), static_cast<std::size_t>(v1::FaultKind_MAX)) << "each has its own";
+  EXPECT_EQ(told.count(advise(static_cast<v1::FaultKind>(77))), 0U);
 }
 
 TEST(Describe, SaysWhenThereIsNoRealTime) {

@@ -32,6 +32,13 @@ TEST(Config, LeftEmptyHasEveryDefaultOfTheSchema) {
   EXPECT_EQ(config.safety().max_missed_ticks(), 50U);
   EXPECT_EQ(config.listen_size(), 0);
   EXPECT_EQ(config.scene(), "");
+  EXPECT_EQ(config.flight_recorder().directory(), "");
+  EXPECT_EQ(config.flight_recorder().seconds(), 2.0);
+  EXPECT_EQ(config.flight_recorder().keep(), 20U);
+  EXPECT_EQ(config.log().level(), v1::Log::INFO);
+  EXPECT_EQ(config.log().file(), "");
+  EXPECT_EQ(config.log().file_bytes(), 10'000'000U);
+  EXPECT_EQ(config.metrics().port(), 0U);
 }
 
 TEST(Config, KeepsWhatIsGiven) {
@@ -188,6 +195,20 @@ TEST(Config, HoldsASocketPathThatTheSystemCanHold) {
   config_of("listen { unix { path: \"/" + std::string(106, 'x') + "\" } }");
   EXPECT_EQ(error_in("listen { unix { path: \"/" + std::string(107, 'x') + "\" } }").field(),
             "listen[0].unix.path");
+}
+
+TEST(Config, TakesTheFoldersOfRecordingsAndLogsRelativeToItselfAndChecksTheRest) {
+  const v1::DaemonConfig config =
+      config_of("flight_recorder { directory: \"faults\" seconds: 5 } log { file: \"l\" level: WARNING }")
+          .message;
+  EXPECT_EQ(config.flight_recorder().directory(), "/c/faults");
+  EXPECT_EQ(config.flight_recorder().seconds(), 5.0);
+  EXPECT_EQ(config.log().file(), "/c/l");
+  EXPECT_EQ(error_in("flight_recorder { seconds: 61 }").field(), "flight_recorder.seconds");
+  EXPECT_EQ(error_in("flight_recorder { keep: 20000 }").field(), "flight_recorder.keep");
+  EXPECT_EQ(error_in("log { file_bytes: 100 }").field(), "log.file_bytes");
+  EXPECT_EQ(error_in("log { level: 9 }").field(), "log.level");
+  EXPECT_EQ(error_in("metrics { port: 65536 }").field(), "metrics.port");
 }
 
 }  // namespace
