@@ -67,6 +67,14 @@ CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name
   return family;
 }
 
+CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
+                     Action alone) {
+  CLI::App& family =
+      add_family(parent, name, help, [&command, action = std::move(alone)] { command.action = action; });
+  add_common_options(family, command);
+  return family;
+}
+
 ExitCode complain(ExitCode code, const std::string& message) {
   std::fprintf(stderr, "hapticctl: %s\n", message.c_str());
   return code;

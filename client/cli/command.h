@@ -47,6 +47,9 @@ CLI::App& add_verb(CLI::App& parent, Command& command, const std::string& name, 
 
 /// Adds a verb that has others below it, and the common options.
 CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name, const std::string& help);
+/// The same, but without another verb it runs `alone`.
+CLI::App& add_family(CLI::App& parent, Command& command, const std::string& name, const std::string& help,
+                     Action alone);
 
 /// Adds --json, and where the daemon is.
 void add_common_options(CLI::App& app, Command& command);

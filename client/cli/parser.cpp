@@ -100,6 +100,16 @@ CLI::App& add_family(CLI::App& parent, const std::string& name, const std::strin
   return *family;
 }
 
+CLI::App& add_family(CLI::App& parent, const std::string& name, const std::string& help,
+                     std::function<void()> alone) {
+  CLI::App& family = add_family(parent, name, help);
+  family.require_subcommand(0, 1);
+  family.callback([&family, call = std::move(alone)] {
+    if (family.get_subcommands().empty()) call();
+  });
+  return family;
+}
+
 std::optional<std::string> parse(CLI::App& app, const std::vector<std::string>& words) {
   // CLI11 takes the words from the end
   std::vector<std::string> reversed(words.rbegin(), words.rend());

@@ -26,6 +26,9 @@ CLI::App& add_verb(CLI::App& parent, const std::string& name, const std::string&
 
 /// Adds a verb that does nothing itself, but has others below it.
 CLI::App& add_family(CLI::App& parent, const std::string& name, const std::string& help);
+/// The same, but it may stand alone; `alone` is called then.
+CLI::App& add_family(CLI::App& parent, const std::string& name, const std::string& help,
+                     std::function<void()> alone);
 
 /// What is wrong with words, for a person: of a verb that is not there its name, and those that it may have
 /// been meant to be.

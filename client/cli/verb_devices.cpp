@@ -177,31 +177,26 @@ ExitCode manage(Command& command, const std::string& name, const Managing& manag
 }  // namespace
 
 void add_devices(CLI::App& app, Command& command) {
-  CLI::App* devices = app.add_subcommand("devices", "the devices, where they are and what they push");
-  add_common_options(*devices, command);
-  devices->require_subcommand(0, 1);
-  devices->callback([&command, devices] {
-    if (devices->get_subcommands().empty()) {
-      command.action = list_devices;
-    }
-  });
+  CLI::App& devices =
+      add_family(app, command, "devices", "the devices, where they are and what they push", list_devices);
 
   const auto is_watched = std::make_shared<bool>(false);
-  CLI::App* list = add_verb(
-      *devices, command, "list", "all of them, as without a word",
+  CLI::App& list = add_verb(
+      devices, command, "list", "all of them, as without a word",
       [is_watched](Command& chosen) { return *is_watched ? watch_devices(chosen) : list_devices(chosen); });
-  list->add_flag("--watch", *is_watched, "and then a line for each change, until it is stopped");
+  add_flag(list, "--watch", *is_watched, "and then a line for each change, until it is stopped");
 
   const auto name = std::make_shared<std::string>();
-  CLI::App* show = add_verb(*devices, command, "show", "all about one of them",
+  CLI::App& show = add_verb(devices, command, "show", "all about one of them",
                             [name](Command& chosen) { return show_device(chosen, *name); });
-  show->add_option("name", *name, "which")->required()->type_name("DEVICE");
+  add_option(show, "name", *name, "which").required().type("DEVICE");
   for (const Managing& managing : kActions) {
-    CLI::App* verb = add_verb(*devices, command, managing.verb, managing.help,
+    CLI::App& verb = add_verb(devices, command, managing.verb, managing.help,
                               [name, &managing](Command& chosen) { return manage(chosen, *name, managing); });
-    verb->add_option("name", *name, "which")->required()->type_name("DEVICE");
+    add_option(verb, "name", *name, "which").required().type("DEVICE");
   }
-  devices->footer(
+  set_footer(
+      devices,
       "Without a further word: list. States: absent (it is looked for), found (but it cannot be opened, or "
       "was\n"
       "lost a moment ago), opening, homing (it must be moved to where its position is known), ready, armed, "
