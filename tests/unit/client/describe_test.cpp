@@ -34,6 +34,22 @@ TEST(Describe, TellsAFaultWithItsNumbers) {
   EXPECT_EQ(describe(fault), "left: over speed, 2.31 m/s where 2 m/s is allowed (tick 9)");
 }
 
+TEST(Describe, TellsASideOfABoxEvenIfItIsNegative) {
+  v1::Fault fault;
+  fault.set_kind(v1::FAULT_OVER_TRAVEL);
+  fault.set_device("left");
+  fault.set_tick(9);
+  fault.set_value(-0.115);
+  fault.set_limit(-0.1);
+  EXPECT_EQ(describe(fault), "left: over travel, -0.115 m where -0.1 m is allowed (tick 9)");
+}
+
+TEST(Describe, EachKindOfFaultHasItsWords) {
+  for (const v1::FaultKind kind : {v1::FAULT_ENERGY, v1::FAULT_EMERGENCY_STOP, v1::FAULT_STILL_SAMPLE}) {
+    EXPECT_EQ(describe(kind).find("fault "), std::string::npos) << kind;
+  }
+}
+
 TEST(Describe, SaysWhenThereIsNoRealTime) {
   v1::RealTime none;
   EXPECT_EQ(describe(none), "no real-time priority, memory not locked");
