@@ -47,6 +47,22 @@ TEST(Describe, TellsWhatToDoAboutEachFaultOfTheSchema) {
   EXPECT_EQ(told.count(advise(static_cast<v1::FaultKind>(77))), 0U);
 }
 
+TEST(Describe, TellsASideOfABoxEvenIfItIsNegative) {
+  v1::Fault fault;
+  fault.set_kind(v1::FAULT_OVER_TRAVEL);
+  fault.set_device("left");
+  fault.set_tick(9);
+  fault.set_value(-0.115);
+  fault.set_limit(-0.1);
+  EXPECT_EQ(describe(fault), "left: over travel, -0.115 m where -0.1 m is allowed (tick 9)");
+}
+
+TEST(Describe, EachKindOfFaultHasItsWords) {
+  for (const v1::FaultKind kind : {v1::FAULT_ENERGY, v1::FAULT_EMERGENCY_STOP, v1::FAULT_STILL_SAMPLE}) {
+    EXPECT_EQ(describe(kind).find("fault "), std::string::npos) << kind;
+  }
+}
+
 TEST(Describe, SaysWhenThereIsNoRealTime) {
   v1::RealTime none;
   EXPECT_EQ(describe(none), "no real-time priority, memory not locked");

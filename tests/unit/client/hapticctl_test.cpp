@@ -232,6 +232,18 @@ TEST_F(Hapticctl, ExitsWithSevenWhileAFaultIsLatched) {
   EXPECT_EQ(ctl("arm").code, 0);
 }
 
+TEST_F(Hapticctl, StopsInAnEmergencyAndLeavesAFaultToClear) {
+  serve();
+  EXPECT_EQ(ctl("arm").code, 0);
+  const Finished stopped = ctl("estop");
+  EXPECT_EQ(stopped.code, 0);
+  EXPECT_EQ(stopped.output, "stopped: no device pushes, until somebody clears the fault\n");
+  EXPECT_EQ(ctl("arm").code, 7);
+  EXPECT_EQ(ctl("estop").code, 0) << "again, to be sure";
+  EXPECT_EQ(ctl("clear").code, 0);
+  EXPECT_EQ(ctl("arm").code, 0);
+}
+
 TEST_F(Hapticctl, ListsDevicesWithTheirFingers) {
   serve();
   const Finished result = ctl("devices");

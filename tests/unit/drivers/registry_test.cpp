@@ -93,6 +93,30 @@ TEST(Registry, APhantomGivesForceByItsCalibrationOnly) {
   EXPECT_EQ(device->info().max_force, 3.0);
 }
 
+TEST(Registry, ADriverTellsWhatItsDeviceBearsAndWhetherItHasMotors) {
+  const auto info_of = [](const auto& choose) {
+    v1::Device config;
+    choose(config);
+    return make_device(config, {})->info();
+  };
+  const DeviceInfo falcon = info_of([](v1::Device& config) { config.mutable_falcon(); });
+  EXPECT_EQ(falcon.travel_min, glm::dvec3(-0.08, -0.08, 0.05));
+  EXPECT_EQ(falcon.travel_max, glm::dvec3(0.08, 0.08, 0.19));
+  EXPECT_TRUE(falcon.exerts_force);
+  const DeviceInfo simulated = info_of([](v1::Device& config) { config.mutable_simulated()->set_mass(1.0); });
+  EXPECT_EQ(simulated.travel_max, glm::dvec3(DeviceInfo::kNone));
+  EXPECT_EQ(simulated.max_mean_force, DeviceInfo::kNone);
+  EXPECT_TRUE(simulated.exerts_force);
+  EXPECT_FALSE(info_of([](v1::Device& config) { config.mutable_playback(); }).exerts_force);
+  EXPECT_FALSE(info_of([](v1::Device& config) { config.mutable_spacemouse(); }).exerts_force);
+  EXPECT_FALSE(info_of([](v1::Device& config) { config.mutable_hydra(); }).exerts_force);
+  EXPECT_FALSE(info_of([](v1::Device& config) { config.mutable_fastrak()->set_port("/none"); }).exerts_force);
+  EXPECT_FALSE(info_of([](v1::Device& config) {
+                 config.mutable_polhem()->mutable_udp()->set_port(47111);
+               }).exerts_force);
+  EXPECT_TRUE(info_of([](v1::Device& config) { config.mutable_polhem(); }).exerts_force);
+}
+
 TEST(Registry, EveryDriverOfTheSchemaIsKnown) {
   const google::protobuf::OneofDescriptor* const drivers =
       v1::Device::descriptor()->FindOneofByName("driver");
