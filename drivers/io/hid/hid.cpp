@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
 #include <set>
 #include <vector>
 
@@ -23,6 +24,13 @@ std::string narrow(const wchar_t* text) {
   return out;
 }
 
+/// What of hidapi is not of one open device: it keeps its last error in a variable of its own, and each
+/// device is looked for on its own thread.
+std::mutex& library() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 [[noreturn]] void fail(const std::string& what, hid_device* device) {
   const std::string reason = narrow(hid_error(device));
   throw DeviceError(what + (reason.empty() ? " failed" : ": " + reason));
@@ -39,6 +47,7 @@ struct HidDevice::Handle {
 };
 
 HidInfo find_hid(const std::string& what, const std::function<bool(const HidInfo&)>& matches) {
+  const std::lock_guard lock(library());
   const std::unique_ptr<hid_device_info, void (*)(hid_device_info*)> list(hid_enumerate(0, 0),
                                                                           &hid_free_enumeration);
   HidInfo found;
@@ -63,6 +72,7 @@ HidInfo find_hid(const std::string& what, const std::function<bool(const HidInfo
 }
 
 HidDevice::HidDevice(const HidInfo& info) {
+  const std::lock_guard lock(library());
   hid_device* const device = hid_open_path(info.path.c_str());
   if (device == nullptr && ::access(info.path.c_str(), R_OK | W_OK) != 0 && errno == EACCES) {
     throw DeviceError("no permission to open " + info.path + ": " + kUdevRemedy);
