@@ -16,6 +16,7 @@
 #include "daemon/scene_builder.h"
 #include "ipc/server.h"
 #include "load/config_file.h"
+#include "rt/cpu_latency.h"
 #include "rt/tick_clock.h"
 #include "servo/servo_loop.h"
 #include "servo/servo_thread.h"
@@ -147,6 +148,11 @@ void log_rights(const rt::RealtimeReport& report) {
   if (!report.warnings.empty()) spdlog::warn("the daemon runs without it, and ticks may be late");
 }
 
+void keep_awake(rt::CpuLatency& cores, bool armed) {
+  if (!armed) return cores.release();
+  if (const std::string warning = cores.hold(); !warning.empty()) spdlog::warn("{}", warning);
+}
+
 ipc::ServerSettings server_settings(const RunOptions& options, const v1::DaemonConfig& config) {
   ipc::ServerSettings settings = ipc::server_settings(config);
   if (!options.socket.empty()) {
@@ -180,6 +186,7 @@ void run(const RunOptions& options) {
   servo::ServoThread servo_thread(setup::realtime_settings(config.message.servo()), settings.rate_hz, loop);
 
   // mailbox -> clients, on this thread
+  rt::CpuLatency cores;
   ipc::Server server(
       server_settings(options, config.message),
       {.mailbox = *mailbox,
@@ -192,7 +199,8 @@ void run(const RunOptions& options) {
        .build_scene = [&](const v1::LoadScene& request) { return builder.from_request(request); },
        .edit_scene = [&](const v1::EditScene& request,
                          const ipc::RunningScene& edited) { return builder.from_edit(request, edited); },
-       .place_device = places_of(devices)});
+       .place_device = places_of(devices),
+       .armed_changed = [&](bool armed) { keep_awake(cores, armed); }});
   const StopWaiter waiter(signals, [&] {
     spdlog::info("stopping");
     // first what a hand feels, then what a screen shows

@@ -211,6 +211,7 @@ class Server::Impl {
     lease_.poll(now);
     // the event that a scene runs was sent before the first snapshot of it
     publisher_.drain(services_.mailbox.snapshots, [this, now] { servo_.poll(now); });
+    tell_armed();
     publish_stats();
     poll_timer_.expires_after(settings_.poll_period);
     poll_timer_.async_wait([this](const error_code& error) {
@@ -218,6 +219,14 @@ class Server::Impl {
         poll();
       }
     });
+  }
+
+  void tell_armed() {
+    const bool armed = publisher_.latest().armed;
+    if (armed != was_armed_ && services_.armed_changed) {
+      services_.armed_changed(armed);
+    }
+    was_armed_ = armed;
   }
 
   void publish_stats() {
@@ -304,6 +313,7 @@ class Server::Impl {
   asio::steady_timer poll_timer_;
   asio::steady_timer stop_timer_;
   std::uint64_t last_stats_tick_ = 0;
+  bool was_armed_ = false;
   bool leaving_ = false;
 };
 

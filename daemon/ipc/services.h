@@ -76,6 +76,9 @@ struct Services {
 
   /// In the order of the device set; empty for a device that no client can move. io thread, never waits.
   std::vector<PlaceDevice> place_device{};
+
+  /// Told whenever force is allowed or forbidden. io thread.
+  std::function<void(bool armed)> armed_changed{};
 };
 
 }  // namespace haptic::ipc
