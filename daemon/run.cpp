@@ -18,6 +18,7 @@
 #include "ipc/server.h"
 #include "load/config_file.h"
 #include "log/begin_log.h"
+#include "rt/cpu_latency.h"
 #include "rt/memory_reserve.h"
 #include "rt/tick_clock.h"
 #include "service/service_manager.h"
@@ -100,6 +101,11 @@ void log_rights(const rt::RealtimeReport& report) {
   if (!report.warnings.empty()) spdlog::warn("the daemon runs without it, and ticks may be late");
 }
 
+void keep_awake(rt::CpuLatency& cores, bool armed) {
+  if (!armed) return cores.release();
+  if (const std::string warning = cores.hold(); !warning.empty()) spdlog::warn("{}", warning);
+}
+
 }  // namespace
 
 void run(const RunOptions& options) {
@@ -130,6 +136,7 @@ void run(const RunOptions& options) {
       settings.rate_hz, fmt::format("{} devices at {} Hz", devices.names().size(), settings.rate_hz));
   ipc::ServerSettings server_settings = settings_of(options, config.message);
   server_settings.passed_sockets = passed_sockets;
+  rt::CpuLatency cores;
   ipc::Server server(std::move(server_settings),
                      {.mailbox = *mailbox,
                       .version = HAPTIC_VERSION,
@@ -150,7 +157,8 @@ void run(const RunOptions& options) {
                           },
                       .place_device = places_of(devices),
                       .keepers = keepers_of(devices),
-                      .on_poll = [&] { supervisor.look(rt::monotonic_ns(), servo_thread.heartbeat()); }});
+                      .on_poll = [&] { supervisor.look(rt::monotonic_ns(), servo_thread.heartbeat()); },
+                      .armed_changed = [&](bool armed) { keep_awake(cores, armed); }});
   Reloader reloader(options, config.message, server);
   const auto reload = [&] { supervisor.reload([&] { reloader.reload(); }); };
   const service::SignalThread waiter(signals, reload, [&] {

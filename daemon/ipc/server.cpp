@@ -354,6 +354,7 @@ class Server::Impl {
     lease_.poll(now);
     // the event that a scene runs was sent before the first snapshot of it
     publisher_.drain(services_.mailbox.snapshots, [this, now] { servo_.poll(now); });
+    tell_armed();
     if (flight_) {
       flight_->poll(now);
     }
@@ -371,6 +372,14 @@ class Server::Impl {
         poll();
       }
     });
+  }
+
+  void tell_armed() {
+    const bool armed = publisher_.latest().armed;
+    if (armed != was_armed_ && services_.armed_changed) {
+      services_.armed_changed(armed);
+    }
+    was_armed_ = armed;
   }
 
   void publish_stats() {
@@ -506,6 +515,7 @@ class Server::Impl {
   asio::steady_timer stop_timer_;
   SteadyClock::time_point next_flush_{};
   std::uint64_t last_stats_tick_ = 0;
+  bool was_armed_ = false;
   bool leaving_ = false;
 };
 

@@ -89,6 +89,9 @@ struct Services {
 
   /// Called every few milliseconds while clients are served, if there is one. io thread, must not wait.
   std::function<void()> on_poll{};
+
+  /// Told whenever force is allowed or forbidden. io thread.
+  std::function<void(bool armed)> armed_changed{};
 };
 
 }  // namespace haptic::ipc

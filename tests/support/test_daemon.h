@@ -2,6 +2,7 @@
 // A daemon in this process: the real server on a socket in a directory of its own, with a fake servo behind
 // it. Its scene has one object, "block", and one finger of two HIPs, "thumb", on the device "left".
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <thread>
@@ -89,7 +90,11 @@ class TestDaemon {
                            .scene = example_scene(),
                            .running = std::make_shared<const engine::Scene>(),
                            .build_scene = build_example,
-                           .edit_scene = edit_example};
+                           .edit_scene = edit_example,
+                           .armed_changed = [this](bool armed) {
+                             is_armed_ = armed;
+                             ++armed_changes_;
+                           }};
     v1::DeviceDescription& device = services.devices.emplace_back();
     device.set_name("left");
     device.set_driver("simulated");
@@ -112,6 +117,9 @@ class TestDaemon {
   FakeServo& servo() noexcept { return servo_; }
   servo::Mailbox& mailbox() noexcept { return *mailbox_; }
   ipc::Server& server() noexcept { return *server_; }
+  /// What it told of arming, and how often.
+  bool is_armed() const noexcept { return is_armed_; }
+  int armed_changes() const noexcept { return armed_changes_; }
   const std::string& address() const noexcept { return server_->addresses().front(); }
   const TemporaryFolder& folder() const noexcept { return folder_; }
 
@@ -119,6 +127,8 @@ class TestDaemon {
   TemporaryFolder folder_;
   std::unique_ptr<servo::Mailbox> mailbox_;
   FakeServo servo_;
+  std::atomic<bool> is_armed_{false};
+  std::atomic<int> armed_changes_{0};
   std::unique_ptr<ipc::Server> server_;
   std::thread thread_;
 };

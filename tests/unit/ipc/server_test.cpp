@@ -9,6 +9,7 @@
 
 #include "client/lib/connection.h"
 #include "client/lib/error.h"
+#include "tests/support/eventually.h"
 #include "tests/support/raw_client.h"
 #include "tests/support/test_daemon.h"
 
@@ -96,6 +97,23 @@ TEST(Server, TellsEveryClientWhatOneDid) {
     ASSERT_TRUE(message && message->has_event());
     EXPECT_EQ(message->event().kind(), v1::Event::ARMED);
   }
+}
+
+TEST(Server, TellsOnceWheneverForceIsAllowedOrForbidden) {
+  TestDaemon daemon;
+  Connection client(at(daemon));
+  std::uint64_t tick = 0;
+  const auto becomes = [&](bool armed, int changes) {
+    return test::eventually([&] {
+      daemon.servo().publish(++tick);
+      return daemon.is_armed() == armed && daemon.armed_changes() == changes;
+    });
+  };
+  EXPECT_TRUE(becomes(false, 0));
+  ask(client, [](v1::Request& request) { request.mutable_arm(); });
+  EXPECT_TRUE(becomes(true, 1));
+  ask(client, [](v1::Request& request) { request.mutable_disarm(); });
+  EXPECT_TRUE(becomes(false, 2));
 }
 
 TEST(Server, AnswersWithTheFaultThatForbidsArming) {
