@@ -275,6 +275,21 @@ def check_own_header_first(root, path, code, problems):
         problems.append((path, 1, f"does not include {header} before anything else"))
 
 
+USING = re.compile(r"^[ \t]*using[ \t]+[\w:]+::(\w+);", re.MULTILINE)
+
+
+def check_together(path, code, problems):
+    """What clang-tidy does not see in sources that are checked together: includes of sources, and unused usings."""
+    for match in INCLUDE.finditer(code):
+        if match.group(2).endswith((".cpp", ".cc", ".c")):
+            problems.append((path, line_of(code, match.start(1)), f"includes the source {match.group(2)}"))
+    if path.endswith(".cpp"):
+        words = re.findall(r"\w+", blank(code, keep_strings=False))
+        for match in USING.finditer(code):
+            if words.count(match.group(1)) < 2:
+                problems.append((path, line_of(code, match.start(1)), f"does not use {match.group(1)}"))
+
+
 def check_words(path, text, problems):
     for match in UNFINISHED.finditer(text):
         problems.append((path, line_of(text, match.start()), f"{match.group(1)} is left"))
@@ -345,6 +360,7 @@ def check_tree(root):
             problems.append((path, 1, "has no #pragma once"))
         check_includes(root, path, code, problems, graph)
         check_own_header_first(root, path, code, problems)
+        check_together(path, code, problems)
         check_words(path, text, problems)
         check_listed(root, path, problems)
     check_cycles(graph, problems)

@@ -51,6 +51,18 @@ class StructureTest(unittest.TestCase):
                 text = f'#pragma once\n#include "{header}"\n'
                 self.assert_only_problem({"daemon/engine/world.h": text}, "daemon/engine/world.h", 2, "may not include")
 
+    def test_no_source_is_included(self):
+        text = '#include "engine/proxy.h"\n#include "engine/proxy.cpp"\n'
+        lists = "haptic_library(haptic_engine SOURCES proxy.cpp world.cpp)\n"
+        changes = {"daemon/engine/world.cpp": text, "daemon/engine/CMakeLists.txt": lists}
+        self.assert_only_problem(changes, "daemon/engine/world.cpp", 2, "includes the source")
+
+    def test_what_is_declared_by_using_is_used(self):
+        begin = '#include "engine/proxy.h"\nusing glm::dvec3;  // dvec3\n'
+        path = "daemon/engine/proxy.cpp"
+        self.assert_only_problem({path: begin + 'const char* const name = "dvec3";\n'}, path, 2, "does not use dvec3")
+        self.assertEqual([], problems_in({path: begin + "dvec3 origin;\n"}))
+
     def test_the_servo_sees_no_driver(self):
         text = '#pragma once\n#include "drivers/simulated/simulated_device.h"\n'
         self.assert_only_problem({"daemon/servo/set.h": text}, "daemon/servo/set.h", 2, "may not include")

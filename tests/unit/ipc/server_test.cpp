@@ -19,7 +19,6 @@ namespace {
 using client::Connection;
 using test::RawClient;
 using test::TestDaemon;
-using test::with_role;
 
 client::Options at(const TestDaemon& daemon) {
   client::Options options;
