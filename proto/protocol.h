@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 8> kFeatures = {
     "subscribe.events",    // topics EVENTS and STATS
     "replay",          // topic INPUTS, GetState, GetScene.embed_meshes and revision, SceneDescription.carry
     "device.move",     // MoveDevice
-    "device.manage",   // ManageDevice; phase, reason, serial and losses of DeviceStatus; DEVICE_CHANGED
+    "device.manage",   // ManageDevice, DEVICE_CHANGED, phase, reason, serial and losses of DeviceStatus
     "emergency_stop",  // EmergencyStop, Device.stop_button
     "faults",          // ListFaults, the event FAULT_RECORDED
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drivers/device_error.h"
+#include "drivers/io/udev/udev_monitor.h"
 #include "drivers/phantom/phantom_watchdog.h"
 #include "rt/tick_clock.h"
 
@@ -41,7 +42,7 @@ class PhantomRoutine final : public DeviceRoutine {
 
   void run(DeviceLink& link, const StopFlag& stop) override {
     if (!settings_.calibration) {
-      link.publish_nothing();
+      life().tell(DevicePhase::kOpening, "it has no calibration (phantom.calibration of the config)");
       while (!stop.is_raised()) std::this_thread::sleep_for(kIdle);
       return;
     }
@@ -55,6 +56,8 @@ class PhantomRoutine final : public DeviceRoutine {
   }
 
   void close() noexcept override { card_.reset(); }
+
+  std::unique_ptr<PlugMonitor> make_monitor() override { return io::watch_udev("phantom"); }
 
  private:
   bool gives_force() const { return settings_.calibration && settings_.max_force > 0.0; }

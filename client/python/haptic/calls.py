@@ -126,7 +126,8 @@ class Calls(ABC):
         Raises Refused while it is armed or another client drives, Unsupported if its driver does not know the action,
         Error if it is not open.
         """
-        await self.call(v1.Request(manage_device=v1.ManageDevice(device=device, action=int(action))))
+        managed = v1.ManageDevice(device=device, action=v1.ManageDevice.Action.Name(action))
+        await self.call(v1.Request(manage_device=managed))
 
     # --- forces: role DRIVE; faults: role ADMIN --------------------------------------------------------------------
 

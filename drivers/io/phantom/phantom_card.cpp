@@ -16,12 +16,13 @@ namespace haptic::drivers::io {
 
 namespace {
 
-std::string in_words(const std::string& path, int error) {
-  if (error == ENOENT) {
-    return path + ": no such card; is the kernel's module \"phantom\" loaded (modprobe phantom)?";
+[[noreturn]] void refuse(const std::string& path, int error) {
+  if (error == ENOENT || error == ENXIO || error == ENODEV) {
+    throw DeviceAbsent(path +
+                       ": no such card; is the kernel's module \"phantom\" loaded (modprobe phantom)?");
   }
-  if (error == EINVAL) return path + ": another program has it open";
-  return path + ": " + std::generic_category().message(error);
+  if (error == EINVAL) throw DeviceError(path + ": another program has it open");
+  throw DeviceError(path + ": " + std::generic_category().message(error));
 }
 
 /// `arguments` is one pointer, or nothing.
@@ -38,7 +39,7 @@ void call(const std::string& path, int file, unsigned long request, Arguments...
 
 PhantomCard::PhantomCard(const std::string& path)
     : path_(path), file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-  if (file_ < 0) throw DeviceError(in_words(path, errno));
+  if (file_ < 0) refuse(path, errno);
 }
 
 PhantomCard::~PhantomCard() { ::close(file_); }

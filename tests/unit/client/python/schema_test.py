@@ -63,7 +63,7 @@ class Schema(unittest.TestCase):
         }
         renamed = {
             "get_status": "status", "list_devices": "devices", "get_scene": "scene", "get_stats": "stats",
-            "edit_scene": "edit", "get_state": "state",
+            "edit_scene": "edit", "get_state": "state", "list_faults": "faults",
         }
         descriptor = v1.Request.DESCRIPTOR
         for call in descriptor.oneofs_by_name["call"].fields:
