@@ -122,15 +122,26 @@ std::unique_ptr<Device> make_hydra(const v1::Device& config, const Files& /*file
       {.name = config.name(), .wand = config.hydra().wand(), .world_from_base = base_of(config)});
 }
 
+fastrak::Model fastrak_model(v1::Device::Fastrak::Model model) {
+  switch (model) {
+    case v1::Device::Fastrak::LIBERTY:
+      return fastrak::Model::kLiberty;
+    case v1::Device::Fastrak::PATRIOT:
+      return fastrak::Model::kPatriot;
+    default:
+      return fastrak::Model::kFastrak;
+  }
+}
+
 std::unique_ptr<Device> make_fastrak(const v1::Device& config, const Files& /*files*/) {
   const v1::Device::Fastrak& fastrak = config.fastrak();
   const v1::Vector3& towards = fastrak.hemisphere();
-  return fastrak::make_fastrak({.name = config.name(),
-                                .port = fastrak.port(),
-                                .baud = fastrak.baud(),
-                                .station = static_cast<int>(fastrak.station()),
-                                .hemisphere = {towards.x(), towards.y(), towards.z()},
-                                .world_from_base = base_of(config)});
+  return fastrak::make_fastrak(
+      {.name = config.name(),
+       .line = {.port = fastrak.port(), .baud = fastrak.baud(), .model = fastrak_model(fastrak.model())},
+       .station = {.number = static_cast<int>(fastrak.station()),
+                   .hemisphere = {towards.x(), towards.y(), towards.z()}},
+       .world_from_base = base_of(config)});
 }
 
 const polhem::Model& polhem_model(v1::Device::Polhem::Model model) {

@@ -147,6 +147,21 @@ class ConfigCheck {
       loaded.paths.push_back(path_of(field, device));
       loaded.firmware.push_back(check_hardware(source_, field, file_, device));
       loaded.calibrations.push_back(check_phantom(source_, field, file_, device));
+      if (device.has_fastrak()) share_tracker(field + ".fastrak", device.fastrak());
+    }
+  }
+
+  // stations of one tracker share its port, and whatever holds for all of it
+  void share_tracker(const std::string& field, const v1::Device::Fastrak& device) {
+    const auto [tracker, is_new] = trackers_.emplace(device.port(), device);
+    if (!is_new && device.baud() != tracker->second.baud()) {
+      source_.fail(field + ".baud", "is another one than that of the other stations on this port");
+    }
+    if (!is_new && device.model() != tracker->second.model()) {
+      source_.fail(field + ".model", "is another one than that of the other stations on this port");
+    }
+    if (!stations_.insert(device.port() + ":" + std::to_string(device.station())).second) {
+      source_.fail(field + ".station", std::to_string(device.station()) + " of this port is another device");
     }
   }
 
@@ -317,7 +332,9 @@ class ConfigCheck {
     }
   }
 
-  std::set<std::string> sockets_;  // of external devices
+  std::set<std::string> sockets_;                        // of external devices
+  std::map<std::string, v1::Device::Fastrak> trackers_;  // the first station of each port
+  std::set<std::string> stations_;                       // of all ports
   v1::DaemonConfig& config_;
   const TextSource& source_;
   const std::filesystem::path& file_;

@@ -97,6 +97,11 @@ void require_port(const TextSource& source, const std::string& field, const std:
   if (port.empty()) source.fail(field + ".port", "is missing: expected a serial port, e.g. \"/dev/ttyUSB0\"");
 }
 
+double most_stations(v1::Device::Fastrak::Model model) {
+  if (model == v1::Device::Fastrak::PATRIOT) return 2;
+  return model == v1::Device::Fastrak::LIBERTY ? 16 : 4;
+}
+
 void fastrak(const TextSource& source, const std::string& field, v1::Device::Fastrak& device) {
   require_port(source, field, device.port());
   if (device.baud() == 0) device.set_baud(115200);
@@ -106,8 +111,11 @@ void fastrak(const TextSource& source, const std::string& field, v1::Device::Fas
                 std::to_string(device.baud()) +
                     " is none of its rates (permitted: 2400, 4800, 9600, 19200, 38400, 57600, 115200)");
   }
+  if (device.model() == v1::Device::Fastrak::MODEL_UNSPECIFIED) {
+    device.set_model(v1::Device::Fastrak::FASTRAK);
+  }
   if (device.station() == 0) device.set_station(1);
-  check_range(source, field + ".station", device.station(), {1, 4});
+  check_range(source, field + ".station", device.station(), {1, most_stations(device.model())});
   if (!device.has_hemisphere()) device.mutable_hemisphere()->set_x(1.0);
   const glm::dvec3 hemisphere = make_point(source, field + ".hemisphere", device.hemisphere());
   if (hemisphere == glm::dvec3(0.0)) source.fail(field + ".hemisphere", "points nowhere");

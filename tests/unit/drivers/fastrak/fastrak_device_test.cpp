@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/support/device_life.h"
 #include "tests/support/serial_mock.h"
@@ -21,8 +24,8 @@ namespace {
 using std::chrono::milliseconds;
 using test::eventually;
 
-/// Answers `S`, and sends records of stations 1 and 2 while it was told to; byte by byte, with garbage
-/// between.
+/// Answers `S`, and sends records of the stations that are on while it was told to; byte by byte, with
+/// garbage between. Station n is at (0.1 n, 0, 0.2).
 class EmulatedTracker {
  public:
   explicit EmulatedTracker(test::SerialMock& port) : port_(port), thread_([this] { serve(); }) {}
@@ -36,15 +39,20 @@ class EmulatedTracker {
   std::atomic<bool> fails{false};  // its records tell an error
   std::atomic<int> starts{0};
   std::atomic<bool> ending{false};
+  std::array<std::atomic<bool>, 5> on{false, true, true, true, true};  // by its switches, until it is told
 
  private:
   void serve() {
     for (int round = 0; !ending; ++round) {
       for (const std::uint8_t byte : port_.receive()) take(static_cast<char>(byte));
       if (!sends || deaf) continue;
-      std::vector<std::uint8_t> bytes = record_of(1, {10.0F, 0.0F, 20.0F}, {1, 0, 0, 0}, fails ? 'a' : ' ');
-      const std::vector<std::uint8_t> other = record_of(2, {99.0F, 99.0F, 99.0F});
-      bytes.insert(bytes.end(), other.begin(), other.end());
+      std::vector<std::uint8_t> bytes;
+      for (int station = 1; station <= 4; ++station) {
+        if (!on[static_cast<std::size_t>(station)]) continue;
+        const std::vector<std::uint8_t> record = record_of(
+            station, {10.0F * static_cast<float>(station), 0.0F, 20.0F}, {1, 0, 0, 0}, fails ? 'a' : ' ');
+        bytes.insert(bytes.end(), record.begin(), record.end());
+      }
       if (round % 3 == 0) bytes.insert(bytes.end(), {'0', '1', 0xFF});
       for (const std::uint8_t byte : bytes) port_.send({&byte, 1});
     }
@@ -56,6 +64,9 @@ class EmulatedTracker {
     const bool is_alone = command_.empty();
     command_ += c;
     if (is_alone && (c == 'c' || c == 'S' || c == 'C' || c == 'f' || c == 'u')) obey(c);
+    if (c == '\r' && command_[0] == 'l') {
+      on[static_cast<std::size_t>(command_[1] - '0')] = command_[3] == '1';
+    }
     if (c == '\r' || (is_alone && std::string("cSCfu").find(c) != std::string::npos)) command_.clear();
   }
 
@@ -75,12 +86,20 @@ class EmulatedTracker {
   std::thread thread_;
 };
 
-FastrakSettings settings(const std::string& port) {
+FastrakSettings settings(const std::string& port, int station = 1) {
   return {.name = "head",
-          .port = port,
-          .settle = milliseconds(20),
-          .command = milliseconds(2),
-          .silence = milliseconds(200)};
+          .line = {.port = port,
+                   .settle = milliseconds(20),
+                   .command = milliseconds(2),
+                   .silence = milliseconds(200)},
+          .station = {.number = station}};
+}
+
+glm::dvec3 place_of(int station) { return {0.1 * station, 0.0, 0.2}; }
+
+bool is_at(Device& device, const glm::dvec3& place) {
+  DeviceSample sample;
+  return device.read(0, sample) && glm::distance(sample.position, place) < 1e-7;
 }
 
 std::string error_of(Device& device) {
@@ -95,9 +114,89 @@ TEST(FastrakDevice, TellsWhereItsStationIsAndNotAnother) {
   device->start();
   DeviceSample sample;
   ASSERT_TRUE(eventually([&] { return device->read(0, sample); }));
-  EXPECT_NEAR(glm::distance(sample.position, glm::dvec3(0.1, 0.0, 0.2)), 0.0, 1e-8);
+  EXPECT_NEAR(glm::distance(sample.position, place_of(1)), 0.0, 1e-8);
+  EXPECT_FALSE(tracker.on[2]) << "one that nobody listens to takes no share of the records";
   device->stop();
   EXPECT_TRUE(eventually([&] { return !tracker.sends; })) << "it is told to be silent";
+}
+
+TEST(FastrakDevice, StationsOfOneTrackerAreDevicesThatShareItsPort) {
+  test::SerialMock port;
+  EmulatedTracker tracker(port);
+  std::vector<std::unique_ptr<Device>> devices;
+  for (int station = 1; station <= 4; ++station) {
+    devices.push_back(make_fastrak(settings(port.path(), station)));
+    devices.back()->start();
+  }
+  for (int station = 1; station <= 4; ++station) {
+    Device& device = *devices[static_cast<std::size_t>(station - 1)];
+    EXPECT_TRUE(eventually([&] { return is_at(device, place_of(station)); })) << station;
+  }
+  devices[0]->stop();
+  // the others go on
+  const auto starts = tracker.starts.load();
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_TRUE(is_at(*devices[3], place_of(4)));
+  EXPECT_EQ(devices[3]->state().losses, 0U);
+  EXPECT_EQ(tracker.starts, starts);
+  for (const auto& device : devices) device->stop();
+  EXPECT_TRUE(eventually([&] { return !tracker.sends; })) << "the last one tells it to be silent";
+}
+
+// asked who it is by ^V, told to send by C, both with CR
+TEST(FastrakDevice, ServesALibertyByItsOwnProtocol) {
+  test::SerialMock port;
+  std::atomic<bool> sends{false};
+  const std::jthread tracker([&](const std::stop_token& stop) {
+    std::string heard;
+    while (!stop.stop_requested()) {
+      for (const std::uint8_t byte : port.receive()) {
+        heard += static_cast<char>(byte);
+        if (byte != '\r') continue;
+        const std::string version = " 0V Polhemus Liberty\r\n";
+        if (heard == "\x16\r") {
+          port.send({reinterpret_cast<const std::uint8_t*>(version.data()), version.size()});
+        }
+        if (heard == "C\r" || heard == "P\r") sends = heard[0] == 'C';
+        heard.clear();
+      }
+      if (sends) port.send(liberty_record_of('L', 'Y', 9, {10.0F, 0.0F, 20.0F}));
+    }
+  });
+  FastrakSettings wanted = settings(port.path(), 9);
+  wanted.line.model = Model::kLiberty;
+  const std::unique_ptr<Device> device = make_fastrak(wanted);
+  device->start();
+  EXPECT_TRUE(eventually([&] { return is_at(*device, place_of(1)); }));
+  device->stop();
+  EXPECT_TRUE(eventually([&] { return !sends; }));
+}
+
+TEST(FastrakDevice, AllStationsAreLostWithTheirPortAndComeBackWithIt) {
+  const test::TemporaryFolder folder;
+  const std::string name = folder.file("tty");
+  std::vector<std::unique_ptr<Device>> devices;
+  for (int station = 1; station <= 2; ++station) {
+    devices.push_back(make_fastrak(settings(name, station)));
+    devices.back()->start();
+  }
+  for (std::uint32_t round = 1; round <= 2; ++round) {
+    test::SerialMock port;
+    {
+      EmulatedTracker tracker(port);
+      ASSERT_EQ(::symlink(port.path().c_str(), name.c_str()), 0);
+      for (int station = 1; station <= 2; ++station) {
+        Device& device = *devices[static_cast<std::size_t>(station - 1)];
+        ASSERT_TRUE(eventually([&] { return is_at(device, place_of(station)); })) << station;
+      }
+    }
+    ASSERT_EQ(::unlink(name.c_str()), 0);
+    port.unplug();
+    for (const auto& device : devices) {
+      ASSERT_TRUE(eventually([&] { return device->state().losses >= round; }));
+      ASSERT_TRUE(test::reaches(*device, DevicePhase::kAbsent));
+    }
+  }
 }
 
 TEST(FastrakDevice, StartsATrackerAgainThatFellSilent) {

@@ -1,5 +1,5 @@
 #pragma once
-// Binary records as a FASTRAK sends them.
+// Binary records as Polhemus trackers send them.
 
 #include <array>
 #include <cstdint>
@@ -22,6 +22,24 @@ inline std::vector<std::uint8_t> record_of(int station, const std::array<float, 
   for (const float value : place) add(value);
   for (const float value : turn) add(value);
   bytes.push_back(' ');
+  return bytes;
+}
+
+/// Likewise of a Liberty ("LY"), a Latus ("LU") or a Patriot ("PA").
+inline std::vector<std::uint8_t> liberty_record_of(char first, char second, int station,
+                                                   const std::array<float, 3>& place,
+                                                   const std::array<float, 4>& turn = {1, 0, 0, 0},
+                                                   char error = ' ') {
+  std::vector<std::uint8_t> bytes = {static_cast<std::uint8_t>(first),
+                                     static_cast<std::uint8_t>(second),
+                                     static_cast<std::uint8_t>(station),
+                                     'C',
+                                     static_cast<std::uint8_t>(error),
+                                     0,
+                                     29,
+                                     0};
+  const std::vector<std::uint8_t> body = record_of(1, place, turn);
+  bytes.insert(bytes.end(), body.begin() + 3, body.end());
   return bytes;
 }
 
