@@ -43,6 +43,7 @@ struct HidMock::Impl {
   HidFunction function;
   std::string node;
   std::string sys_path;
+  std::string hid_path;  // its parent
   UMockdevIoctlBase* handler = nullptr;
   std::array<gulong, 3> signals{};
   int fifo = -1;
@@ -64,22 +65,13 @@ void HidMock::Impl::plug_in() {
   const std::string usb = "/devices/pci0000:00/0000:00:14.0/usb1/1-" + port;
   const std::string interface = usb + "/1-" + port + ":1." + std::to_string(identity.interface_number);
   const std::string hid_name = "0003:" + id + "." + hex(static_cast<unsigned>(identity.node) + 1, 4);
-  const std::string hid = interface + "/" + hid_name;
+  hid_path = interface + "/" + hid_name;
   node = "/dev/hidraw" + number;
-  sys_path = hid + "/hidraw/hidraw" + number;
+  sys_path = hid_path + "/hidraw/hidraw" + number;
   // child first
   bus.add("P: " + sys_path + "\nN: hidraw" + number + "\nE: DEVNAME=" + node +
           "\nE: SUBSYSTEM=hidraw\nE: MAJOR=241\nE: MINOR=" + number + "\nA: dev=241:" + number +
           "\\n\nL: device=../../../" + hid_name + "\n");
-  bus.add("P: " + hid + "\nE: SUBSYSTEM=hid\nE: HID_ID=0003:0000" + hex(identity.vendor, 4) + ":0000" +
-          hex(identity.product, 4) + "\nE: HID_NAME=emulated\nE: HID_UNIQ=" + identity.serial +
-          "\nH: report_descriptor=" + report_descriptor(identity) + "\n");
-  bus.add("P: " + interface + "\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=" +
-          hex(static_cast<unsigned>(identity.interface_number), 2) + "\\n\n");
-  bus.add_once(usb, "P: " + usb +
-                        "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nA: idVendor=" + hex(identity.vendor, 4) +
-                        "\\n\nA: idProduct=" + hex(identity.product, 4) + "\\n\nA: bcdDevice=0100\\n\n");
-
   // packets, as reports are: what is written at once is read at once
   const std::string path = bus.real_path(node);
   ::unlink(path.c_str());
@@ -88,12 +80,22 @@ void HidMock::Impl::plug_in() {
   if (fifo < 0 || ::fcntl(fifo, F_SETFL, O_NONBLOCK | O_DIRECT) != 0) {
     throw std::runtime_error("the device's node cannot be opened for packets");
   }
-
   handler = umockdev_ioctl_base_new();
   signals = {g_signal_connect(handler, "handle-ioctl", G_CALLBACK(&Impl::on_ioctl), this),
              g_signal_connect(handler, "handle-read", G_CALLBACK(&Impl::on_read), this),
              g_signal_connect(handler, "handle-write", G_CALLBACK(&Impl::on_write), this)};
   bus.attach(node, handler);
+  // without these hidapi passes it over; a driver may open it as soon as they are there
+  bus.add("P: " + hid_path + "\nE: SUBSYSTEM=hid\nE: HID_ID=0003:0000" + hex(identity.vendor, 4) + ":0000" +
+          hex(identity.product, 4) + "\nE: HID_NAME=emulated\nE: HID_UNIQ=" + identity.serial +
+          "\nH: report_descriptor=" + report_descriptor(identity) + "\n");
+  bus.add("P: " + interface + "\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=" +
+          hex(static_cast<unsigned>(identity.interface_number), 2) + "\\n\n");
+  bus.add_once(usb, "P: " + usb +
+                        "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nA: idVendor=" + hex(identity.vendor, 4) +
+                        "\\n\nA: idProduct=" + hex(identity.product, 4) + "\\n\nA: bcdDevice=0100\\n\n");
+  // now it can be opened
+  umockdev_testbed_uevent(bus.testbed(), ("/sys" + sys_path).c_str(), "add");
 }
 
 gboolean HidMock::Impl::on_ioctl(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpointer self) {
@@ -156,6 +158,7 @@ HidMock::~HidMock() {
   for (const gulong signal : impl_->signals) g_signal_handler_disconnect(impl_->handler, signal);
   umockdev_testbed_detach_ioctl(impl_->bus.testbed(), impl_->node.c_str(), nullptr);
   umockdev_testbed_remove_device(impl_->bus.testbed(), ("/sys" + impl_->sys_path).c_str());
+  umockdev_testbed_remove_device(impl_->bus.testbed(), ("/sys" + impl_->hid_path).c_str());
   g_object_unref(impl_->handler);
   ::close(impl_->fifo);
 }

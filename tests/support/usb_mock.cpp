@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -177,22 +178,24 @@ void UsbMock::Impl::plug_in() {
   sys_path = "/devices/pci0000:00/0000:00:14.0/usb1/1-" + std::to_string(identity.port);
   node = "/dev/bus/usb/001/00" + number;
   std::string text =
-      "P: " + sys_path + "\nN: bus/usb/001/00" + number + "=00\nE: DEVNAME=" + node +
+      "P: " + sys_path + "\nE: DEVNAME=" + node +
       "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=00" + number +
       "\nA: busnum=1\\n\nA: devnum=" + number + "\\n\nA: speed=12\\n\nA: bConfigurationValue=1\\n" +
       "\nA: idVendor=" + hex4(identity.vendor) + "\\n\nA: idProduct=" + hex4(identity.product) +
       "\\n\nH: descriptors=" + hex(descriptors(identity)) + "\n";
-  bus.add(text);
-  make_node();
+  // who answers comes first, then the node: a driver may open it as soon as it is told of
   handler = umockdev_ioctl_base_new();
   signal = g_signal_connect(handler, "handle-ioctl", G_CALLBACK(&Impl::handle), this);
   bus.attach(node, handler);
+  make_node();
+  bus.add(text);
   pump = std::thread([this] { serve(); });
 }
 
 void UsbMock::Impl::make_node() {
   const std::string path = bus.real_path(node);
   // only what the preload library does not see reaches the real files; it leaves paths below the root alone
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   ::unlink(path.c_str());
   if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error("no FIFO for the device's node");
   fifo = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);

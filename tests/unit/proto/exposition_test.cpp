@@ -39,7 +39,7 @@ TEST(Exposition, EscapesNamesThatPeopleChose) {
 TEST(Exposition, AddsTheBinsOfAHistogramUp) {
   v1::Stats stats;
   v1::Histogram& wakeup = *stats.mutable_wakeup();
-  for (const auto& [upper, count] : {std::pair{15, 4}, std::pair{1023, 2}, std::pair{1087, 1}}) {
+  for (const auto& [upper, count] : {std::pair{15U, 4U}, std::pair{1023U, 2U}, std::pair{1087U, 1U}}) {
     wakeup.add_upper_ns(upper);
     wakeup.add_count(count);
   }
