@@ -70,7 +70,8 @@ void LimitedSink::sink_it_(const spdlog::details::log_msg& line) {
   tell_held_back(line.time, false);
   auto entry = kinds_.find({line.level, kind_of(line.payload)});
   if (entry == kinds_.end() && kinds_.size() < kMostKinds) {
-    entry = kinds_.emplace(std::pair(line.level, kind_of(line.payload)), Kind{.begin = line.time, .last = {}}).first;
+    entry = kinds_.emplace(std::pair(line.level, kind_of(line.payload)), Kind{.begin = line.time, .last = {}})
+                .first;
   }
   if (entry != kinds_.end() && entry->second.passed >= limits_.alike) {
     ++entry->second.held_back;

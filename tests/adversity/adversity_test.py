@@ -25,7 +25,8 @@ FAKE_TIME = Path("/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1")
 class AdversityTest(DaemonTest):
     def make_listen(self) -> str:
         # the hand of these tests does not mind a slow machine
-        return super().make_listen() + ("safety { max_sample_age: 5 max_missed_ticks: 100 arm_ramp: 0.001 max_arm_force: 5 }")
+        return super().make_listen() + (
+            "safety { max_sample_age: 5 max_missed_ticks: 100 arm_ramp: 0.001 max_arm_force: 5 }")
 
     def limit(self, what: int, value: int) -> None:
         hard = resource.prlimit(self.daemon.pid, what)[1]

@@ -32,7 +32,7 @@ class Calls(ABC):
         return (await self.call(v1.Request(get_status=v1.GetStatus()))).status
 
     async def devices(self) -> list[v1.DeviceStatus]:
-        """In the order of the config: where each is, its phase (haptic.DevicePhase), and the reason if it is not ready."""
+        """In the order of the config: where each is, its phase (haptic.DevicePhase), and why it is not ready."""
         return list((await self.call(v1.Request(list_devices=v1.ListDevices()))).devices.device)
 
     async def scene(self) -> v1.SceneDescription:
@@ -103,8 +103,8 @@ class Calls(ABC):
     ) -> v1.DeviceForce:
         """Tells where a device of the driver "virtual" is, in the world, and returns what it shall do to its user.
 
-        Position in m; orientation w, x, y, z; velocity in m/s, otherwise as the positions tell. To be called again within
-        safety.max_sample_age. `sequence` and `monotonic_ns`: see MoveDevice in the schema. Raises Refused while another
+        Position in m; orientation w, x, y, z; velocity in m/s, otherwise as the positions tell. To be called again
+        within safety.max_sample_age. `sequence` and `monotonic_ns`: see MoveDevice in the schema. Raises Refused while another
         client drives or moves it, NothingToDo if a newer sample has come before.
         """
         x, y, z = position
@@ -144,7 +144,7 @@ class Calls(ABC):
         await self.call(v1.Request(disarm=v1.Disarm()))
 
     async def emergency_stop(self) -> None:
-        """Ends all force in the next tick and latches a fault; role SCRIPT, whoever drives. No limit of rate holds it up."""
+        """Ends all force in the next tick and latches a fault; role SCRIPT, whoever drives, at any rate."""
         await self.call(v1.Request(emergency_stop=v1.EmergencyStop()))
 
     async def clear_fault(self) -> None:

@@ -59,8 +59,7 @@ TEST_P(Corpus, IsGoodOrToldWithFileAndPlace) {
   const bool is_binary = error.message().starts_with("byte ");
   const bool is_whole_file = error.message().starts_with("has no first-order tetrahedra");
   // what a calibration lacks as a whole stands nowhere in it
-  const bool is_missing =
-      GetParam().parent_path().filename() == "calibration_fuzz" && !error.field().empty();
+  const bool is_missing = GetParam().parent_path().filename() == "calibration_fuzz" && !error.field().empty();
   EXPECT_FALSE(error.file().empty()) << error.what();
   EXPECT_TRUE(error.line() != 0 || is_binary || is_whole_file || is_missing) << error.what();
   EXPECT_LT(std::string(error.what()).size(), 600U);
