@@ -104,8 +104,8 @@ class Calls(ABC):
         """Tells where a device of the driver "virtual" is, in the world, and returns what it shall do to its user.
 
         Position in m; orientation w, x, y, z; velocity in m/s, otherwise as the positions tell. To be called again
-        within safety.max_sample_age. `sequence` and `monotonic_ns`: see MoveDevice in the schema. Raises Refused while another
-        client drives or moves it, NothingToDo if a newer sample has come before.
+        within safety.max_sample_age. `sequence` and `monotonic_ns`: see MoveDevice in the schema. Raises Refused while
+        another client drives or moves it, NothingToDo if a newer sample has come before.
         """
         x, y, z = position
         qw, qx, qy, qz = orientation
