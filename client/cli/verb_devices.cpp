@@ -27,7 +27,7 @@ double length(const v1::Vector3& v) { return std::sqrt(v.x() * v.x() + v.y() * v
 
 // a daemon before phases told only whether there are samples
 std::string state_of(const v1::DeviceStatus& device) {
-  const std::string fault =
+  std::string fault =
       device.fault().kind() == v1::FAULT_NONE ? "" : "FAULT " + describe(device.fault().kind());
   switch (device.phase()) {
     case v1::DEVICE_PHASE_UNSPECIFIED:

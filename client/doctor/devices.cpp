@@ -121,7 +121,7 @@ class DeviceCheck {
   }
 
   void external(const v1::Device::External& config) {
-    const std::string path = config.path();
+    const std::string& path = config.path();
     const std::string folder = std::filesystem::path(path).parent_path().string();
     if (!machine_.exists(folder)) {
       return absent("the folder of its socket, " + folder + ", is not there",

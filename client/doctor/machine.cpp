@@ -177,7 +177,7 @@ std::vector<Holder> Machine::holders(const std::string& path) const {
     if (!pid) continue;
     const std::string folder = "/proc/" + name;
     for (const std::string& file : list(folder + "/fd")) {
-      if (link(folder + "/fd/" + file) != path) continue;
+      if (link(fmt::format("{}/fd/{}", folder, file)) != path) continue;
       found.push_back({*pid, line(folder + "/comm").value_or("?")});
       break;
     }

@@ -136,8 +136,8 @@ void cgroup(const Machine& machine, Findings& findings) {
       return;
     }
     if (!contains("," + controllers + ",", ",cpu,")) continue;
-    const std::string file =
-        "/sys/fs/cgroup/" + controllers + path + (path.ends_with('/') ? "" : "/") + "cpu.rt_runtime_us";
+    const std::string file = fmt::format("/sys/fs/cgroup/{}{}{}cpu.rt_runtime_us", controllers, path,
+                                         path.ends_with('/') ? "" : "/");
     const std::optional<double> runtime = machine.number(file);
     if (!runtime || *runtime != 0.0) continue;
     findings.push_back({"cgroup", Verdict::kBad, "its group has no time for real-time threads",
@@ -206,7 +206,7 @@ void sleep_states(const Machine& machine, const v1::Servo& servo, Findings& find
   for (const std::string& core : cores_of(machine, servo)) {
     const std::string folder = "/sys/devices/system/cpu/" + core + "/cpuidle";
     for (const std::string& state : machine.list(folder)) {
-      const std::string at = folder + "/" + state;
+      const std::string at = fmt::format("{}/{}", folder, state);
       const double latency = machine.number(at + "/latency").value_or(0.0);
       if (machine.line(at + "/disable") == "1" || latency <= longest) continue;
       longest = latency;

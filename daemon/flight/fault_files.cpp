@@ -36,8 +36,8 @@ std::string stem_of(const std::string& fault, std::uint64_t realtime_ns) {
 }
 
 bool is_recording(const std::string& name) {
-  static const std::regex kName(R"(fault-\d{8}T\d{6}\.\d{3}Z-[a-z0-9_]+(-\d+)?\.mcap)");
-  return std::regex_match(name, kName);
+  static const std::regex pattern(R"(fault-\d{8}T\d{6}\.\d{3}Z-[a-z0-9_]+(-\d+)?\.mcap)");
+  return std::regex_match(name, pattern);
 }
 
 bool is_part(const std::string& name) { return name.starts_with(".fault-") && name.ends_with(".part"); }

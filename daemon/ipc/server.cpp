@@ -296,7 +296,7 @@ class Server::Impl {
         tell_seldom(next_handshake_log_, "a client over TLS did not get in: " + error);
       } else if (!leaving_) {
         welcome(std::move(peer.stream),
-                [&entrance, names = peer.names] { return certified_peer(names, entrance.allow); });
+                [&entrance, names = std::move(peer.names)] { return certified_peer(names, entrance.allow); });
       }
     };
     entrance.tls->handshake(std::move(socket), settings_.session.hello, on_peer);

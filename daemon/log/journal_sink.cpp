@@ -45,7 +45,8 @@ void JournalSink::sink_it_(const spdlog::details::log_msg& line) {
   std::vector<std::string> texts = {"MESSAGE=" + std::string(line.payload.data(), line.payload.size()),
                                     "PRIORITY=" + std::to_string(priority_of(line.level)),
                                     "SYSLOG_IDENTIFIER=hapticd"};
-  for (const auto& [name, value] : current_fields()) texts.push_back(name + "=" + value);
+  for (const auto& [name, value] : current_fields())
+    texts.push_back(std::string(name).append("=").append(value));
   std::vector<iovec> fields;
   fields.reserve(texts.size());
   for (std::string& text : texts) fields.push_back({.iov_base = text.data(), .iov_len = text.size()});

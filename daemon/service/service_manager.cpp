@@ -2,6 +2,8 @@
 
 #include <systemd/sd-daemon.h>
 
+#include <algorithm>
+
 namespace haptic::service {
 namespace {
 
@@ -20,6 +22,7 @@ std::string in_one_line(std::string text) {
 std::vector<int> take_passed_sockets() {
   std::vector<int> sockets;
   const int count = sd_listen_fds(1);
+  sockets.reserve(static_cast<std::size_t>(std::max(0, count)));
   for (int i = 0; i < count; ++i) sockets.push_back(SD_LISTEN_FDS_START + i);
   return sockets;
 }

@@ -40,7 +40,7 @@ bool fastrak_can_begin(const std::uint8_t* bytes, std::size_t length) noexcept {
 
 bool liberty_can_begin(Model model, const std::uint8_t* bytes, std::size_t length) noexcept {
   const bool is_patriot = model == Model::kPatriot;
-  if (length > 0 && bytes[0] != (is_patriot ? 'P' : 'L')) return false;
+  if (length > 0 && (is_patriot ? bytes[0] != 'P' : bytes[0] != 'L')) return false;
   if (length > 1 && (is_patriot ? bytes[1] != 'A' : bytes[1] != 'Y' && bytes[1] != 'U')) return false;
   if (length > 2 && (bytes[2] < 1 || bytes[2] > stations_of(model))) return false;
   constexpr std::uint8_t kLastPrintable = 0x7E;

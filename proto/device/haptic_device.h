@@ -35,6 +35,7 @@
 #define HAPTIC_DEVICE_MAGIC 0x44504148U /* "HAPD" */
 #define HAPTIC_DEVICE_VERSION 1U
 
+/* NOLINTBEGIN(readability-identifier-naming): names as C has them */
 enum haptic_message_kind { HAPTIC_SAMPLE = 1, HAPTIC_FORCE = 2, HAPTIC_REFUSED = 3 };
 
 /* Why hapticd ended the connection. */
@@ -167,3 +168,4 @@ static inline void haptic_device_force(const struct haptic_device* device, doubl
     torque[i] = live ? device->newest.torque[i] : 0.0;
   }
 }
+/* NOLINTEND(readability-identifier-naming) */

@@ -77,7 +77,7 @@ class Page {
   }
 
   void add(const v1::Histogram& histogram, const char* label = nullptr) {
-    const std::string value = histogram.name();
+    const std::string& value = histogram.name();
     const auto add_bucket = [&](const std::string& le, std::uint64_t below) {
       if (label == nullptr) {
         add(below, {{"le", le}}, "_bucket");
