@@ -35,6 +35,11 @@ export function inspectable(view: SceneView, session: Session, player: () => Pla
       const at = new Vector3(x, y, z).project(view.stage.camera);
       return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
     },
+    /** Where fingers are drawn, m, world; only those whose device is present. */
+    fingers(): Record<string, [number, number, number]> {
+      const shown = (view.bodies?.bodies ?? []).filter(({ mesh }) => mesh.visible);
+      return Object.fromEntries(shown.map(({ name, mesh }) => [name, mesh.position.toArray()]));
+    },
     drawn(): Drawn {
       const { moment } = player();
       return {

@@ -1,5 +1,7 @@
 // The page: puts its parts together, and keeps them up with what is shown.
 import './style.css';
+import { Vector3 } from 'three';
+import { Event_Kind } from './gen/haptic/v1/telemetry_pb';
 import { WorkerTransport } from './connection/worker_transport';
 import { Charts } from './charts/charts';
 import { Hands } from './grab/hands';
@@ -66,7 +68,10 @@ const session = new Session(transport, socketUrl(), {
     if (player.source.live) useSource();
   },
   wrong: (text) => banners.note(text, 'wrong'),
-  happened: (event) => banners.note(event.message || `event ${event.kind}`),
+  happened: (event) => {
+    // the number in the header and the marks tell of missed ticks; faults have banners
+    if (event.kind !== Event_Kind.TICKS_MISSED && event.kind !== Event_Kind.FAULT_LATCHED) banners.note(event.message);
+  },
 });
 const livePlayer = new Player(session.source);
 let player = livePlayer;
@@ -126,6 +131,9 @@ const keys: Key[] = [
   { key: 'f', shown: 'F', does: 'force arrows', run: () => changeLook(toggleForces) },
   { key: 'h', shown: 'H', does: 'HIPs and proxies', run: () => changeLook(() => (view.look.hips = view.look.proxies = !view.look.hips)) },
   { key: 'r', shown: 'R', does: 'view from where it began', run: () => view.stage.resetCamera() },
+  { key: '1', shown: '1', does: 'view from the front', run: () => view.stage.resetCamera(new Vector3(0, 0.12, 1)) },
+  { key: '2', shown: '2', does: 'view from the right', run: () => view.stage.resetCamera(new Vector3(1, 0.12, 0)) },
+  { key: '3', shown: '3', does: 'view from above', run: () => view.stage.resetCamera(new Vector3(0, 1, 0.001)) },
   { key: 'o', shown: 'O', does: 'open a recording', run: () => fileInput.click() },
   { key: 't', shown: 'T', does: 'light or dark', run: () => { toggleTheme(); paint(); } },
   { key: 'escape', shown: 'Esc', does: 'select nothing', run: () => select(undefined) },

@@ -130,7 +130,7 @@ export class Session {
     this.startNs ??= frame.monotonicNs;
     const time = Number(frame.monotonicNs - this.startNs) * 1e-9;
     if (frame.stats) {
-      this.source.paces.push(paceOf(this.stats, frame.stats, time));
+      if (this.stats) this.source.paces.push(paceOf(this.stats, frame.stats, time));
       this.stats = frame.stats;
       return;
     }

@@ -155,6 +155,7 @@ export class Charts {
             gap: 2,
             ticks,
             grid: { stroke: grid, width: 1 },
+            splits: (_plot, _axis, low, high) => this.splits(low, high),
             values: (_plot, values) => values.map((value) => `${Number((value - this.player.time).toFixed(1))} s`),
           },
           { stroke: axis, font, size: 38, gap: 3, ticks, grid: { stroke: grid, width: 1 } },
@@ -184,6 +185,15 @@ export class Charts {
       if (event.clientX >= box.left) this.player.seek(plot.posToVal(event.clientX - box.left, 'x'));
     });
     return { strip, plot, readouts, root };
+  }
+
+  /** Whole seconds before and after the shown time. */
+  private splits(low: number, high: number): number[] {
+    const step = [1, 2, 5, 10].find((s) => (high - low) / s <= 7) ?? 10;
+    const now = this.player.time;
+    const all: number[] = [];
+    for (let k = Math.ceil((low - now) / step); now + k * step <= high; ++k) all.push(now + k * step);
+    return all;
   }
 
   private fit(): void {

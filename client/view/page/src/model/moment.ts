@@ -79,10 +79,10 @@ function since(before: Counts | undefined, after: Counts | undefined): { mean: n
   return { mean: Math.max(0, sum / count) * 1e-9, max: Number(max) * 1e-9 };
 }
 
-export function paceOf(before: Stats | undefined, after: Stats, time: number): Pace {
-  const stage = (stats: Stats | undefined) => stats?.stage.find((histogram) => histogram.name === 'tick');
+export function paceOf(before: Stats, after: Stats, time: number): Pace {
+  const stage = (stats: Stats) => stats.stage.find((histogram) => histogram.name === 'tick');
   const tick = since(stage(before), stage(after));
-  const wakeup = since(before?.wakeup, after.wakeup);
+  const wakeup = since(before.wakeup, after.wakeup);
   return {
     time,
     tickMean: tick.mean,

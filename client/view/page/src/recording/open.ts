@@ -87,7 +87,7 @@ export async function openRecording(file: Blob, name: string, progress: (share: 
     } else {
       const frame = fromBinary(FrameSchema, message.data);
       if (frame.stats) {
-        source.paces.push(paceOf(stats, frame.stats, elapsed));
+        if (stats) source.paces.push(paceOf(stats, frame.stats, elapsed));
         stats = frame.stats;
       }
       const event: Event | undefined = frame.event;

@@ -43,7 +43,7 @@ export function fingersOf(scene: SceneDescription): FingerSpan[] {
 /** A ball at each device on which a finger rides: something to see and to take hold of. */
 export class FingerBodies {
   readonly root = new Group();
-  readonly bodies: { mesh: Mesh<SphereGeometry, MeshStandardMaterial>; finger: number; device: number }[] = [];
+  readonly bodies: { mesh: Mesh<SphereGeometry, MeshStandardMaterial>; name: string; finger: number; device: number }[] = [];
   private readonly geometry = new SphereGeometry(1, 28, 18);
 
   constructor(scene: SceneDescription, devices: DeviceDescription[], smallest: number) {
@@ -58,7 +58,7 @@ export class FingerBodies {
       mesh.userData.finger = i;
       mesh.visible = false;
       this.root.add(mesh);
-      this.bodies.push({ mesh, finger: i, device });
+      this.bodies.push({ mesh, name: finger.name, finger: i, device });
     });
   }
 

@@ -33,6 +33,8 @@ export interface CellsLook {
   byMaterial: boolean;
 }
 
+/** What is behind an object, or pressed into it, shines through. */
+const SOLID = 0.82;
 const UNIFORM_MOVABLE = new Color('#8fb4d9');
 const UNIFORM_FIXED = new Color('#9aa3ad');
 
@@ -77,7 +79,7 @@ export class SceneObject {
     const geometry = triangleSoup(surface, (material) => new Color(materialColour(material)));
     this.surface = new Mesh(
       geometry,
-      new MeshStandardMaterial({ roughness: 0.75, metalness: 0, flatShading: false, transparent: true, opacity: 1 }),
+      new MeshStandardMaterial({ roughness: 0.75, metalness: 0, flatShading: false, transparent: true, opacity: SOLID }),
     );
     if (this.triangles > 0) {
       this.bvh = new MeshBVH(geometry);
@@ -134,7 +136,7 @@ export class SceneObject {
   showCells(look: CellsLook, selected: boolean): void {
     this.paint(look.byMaterial, selected);
     const shown = look.shown && this.hasCells;
-    this.surface.material.opacity = shown ? 0.12 : 1;
+    this.surface.material.opacity = shown ? 0.12 : SOLID;
     this.surface.material.depthWrite = !shown;
     this.surface.castShadow = !shown;
     if (!shown) {

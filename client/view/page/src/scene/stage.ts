@@ -11,7 +11,7 @@ import {
   LineBasicMaterial,
   LineSegments,
   Mesh,
-  PCFSoftShadowMap,
+  PCFShadowMap,
   PerspectiveCamera,
   PlaneGeometry,
   Quaternion,
@@ -23,8 +23,11 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-const SLOW = 40; // ms for a picture; beyond, it is drawn with fewer pixels
-const FEWEST_PIXELS = 0.6; // for each of the page's
+const SLOW = 50; // ms between two pictures; beyond, they are drawn with fewer pixels
+const FEWEST_PIXELS = 0.5; // for each of the page's, along a line
+const JUDGED = 12; // pictures in a row
+
+const OBLIQUE = new Vector3(0.85, 0.55, 1);
 
 /** The next of 1, 2, 5, 10, ... at or above `value`. */
 export function roundUp(value: number): number {
@@ -49,7 +52,9 @@ export class Stage {
   private grid: LineSegments<BufferGeometry, LineBasicMaterial> | undefined;
   private gridColour = '#000000';
   private pixelRatio = Math.min(window.devicePixelRatio, 2);
-  private readonly durations: number[] = [];
+  private last = 0; // ms, of the latest picture; 0: the one before was not drawn
+  private inRow = 0; // pictures
+  private taken = 0; // ms, by these
   private bounds = new Sphere(new Vector3(), 0.1);
   private up = new Vector3(0, 1, 0);
   private wanted = true;
@@ -57,13 +62,13 @@ export class Stage {
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.toneMapping = ACESFilmicToneMapping;
     this.renderer.toneMappingExposure = 1.05;
     this.controls = this.makeControls();
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(1024, 1024);
-    this.sun.shadow.radius = 5;
+    this.sun.shadow.radius = 7;
     this.sun.shadow.bias = -0.0005;
     this.shadow.receiveShadow = true;
     this.shadow.raycast = () => undefined;
@@ -104,10 +109,11 @@ export class Stage {
     this.resetCamera();
   }
 
-  resetCamera(): void {
+  /** Looks at all of the scene from there: x right, y up, z towards the reader. */
+  resetCamera(from = OBLIQUE): void {
     const { center, radius } = this.bounds;
     const upright = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.up);
-    const towards = new Vector3(0.85, 0.55, 1).normalize().applyQuaternion(upright);
+    const towards = from.clone().normalize().applyQuaternion(upright);
     const half = (Math.min(this.camera.fov, this.camera.fov * this.camera.aspect) * Math.PI) / 360;
     const distance = (1.15 * radius) / Math.sin(half);
     this.camera.position.copy(center).addScaledVector(towards, distance);
@@ -120,7 +126,7 @@ export class Stage {
     this.controls.minDistance = radius / 5;
     this.controls.maxDistance = radius * 12;
     this.controls.update();
-    const sunward = new Vector3(0.4, 1, 0.35).applyQuaternion(upright).normalize();
+    const sunward = new Vector3(0.3, 1, 0.7).applyQuaternion(upright).normalize();
     this.sun.position.copy(center).addScaledVector(sunward, 5 * radius);
     this.sun.target.position.copy(center);
     const { camera } = this.sun.shadow;
@@ -180,22 +186,32 @@ export class Stage {
       this.camera.updateProjectionMatrix();
       this.wanted = true;
     }
-    if (!this.wanted) return false;
+    if (!this.wanted) {
+      this.last = 0;
+      return false;
+    }
     this.wanted = false;
     this.fogAround();
-    const begin = performance.now();
     this.renderer.render(this.scene, this.camera);
     this.pictures += 1;
-    this.adapt(performance.now() - begin);
+    this.adapt();
     return true;
   }
 
-  /** Fewer pixels where pictures are slow, as without a graphics card. */
-  private adapt(duration: number): void {
-    this.durations.push(duration);
-    if (this.durations.length < 20) return;
-    const mean = this.durations.reduce((a, b) => a + b, 0) / this.durations.length;
-    this.durations.length = 0;
-    if (mean > SLOW && this.pixelRatio > FEWEST_PIXELS) this.pixelRatio = Math.max(FEWEST_PIXELS, 0.8 * this.pixelRatio);
+  /** Fewer pixels, and then no shadows, where pictures are slow, as without a graphics card. */
+  private adapt(): void {
+    const now = performance.now();
+    if (this.last > 0) {
+      this.taken += now - this.last;
+      this.inRow += 1;
+    }
+    this.last = now;
+    if (this.inRow < JUDGED) return;
+    const isSlow = this.taken / this.inRow > SLOW;
+    this.inRow = 0;
+    this.taken = 0;
+    if (!isSlow) return;
+    if (this.pixelRatio > FEWEST_PIXELS) this.pixelRatio = Math.max(FEWEST_PIXELS, 0.75 * this.pixelRatio);
+    else this.sun.castShadow = false;
   }
 }

@@ -91,8 +91,8 @@ export class SceneView {
     if (!keepCamera) {
       const bounds = this.boundsOf();
       this.size = bounds.radius;
-      this.hipRadius = 0.016 * bounds.radius;
-      this.look.arrowScale = roundUp(0.12 * bounds.radius);
+      this.hipRadius = 0.013 * bounds.radius;
+      this.look.arrowScale = roundUp(0.25 * bounds.radius);
       this.hipForces.setThickness(0.014 * bounds.radius);
       this.deviceForces.setThickness(0.028 * bounds.radius);
       this.objectForces.setThickness(0.028 * bounds.radius);

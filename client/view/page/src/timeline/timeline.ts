@@ -67,7 +67,7 @@ export class Timeline {
     for (let i = Math.max(0, marks.length - MARK_LIMIT); i < marks.length; ++i) {
       const mark = marks.at(i);
       if (!mark || mark.time < this.player.start) continue;
-      const item = h('i', { class: mark.kind, title: mark.text });
+      const item = h('i', { 'data-kind': mark.kind, title: mark.text });
       item.style.left = `${(100 * (mark.time - this.player.start)) / span}%`;
       items.push(item);
     }
