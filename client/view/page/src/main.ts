@@ -26,11 +26,14 @@ import { inspectable } from './inspect';
 const PANELS_PERIOD = 100; // ms between two updates of numbers and charts
 const NEVER = BigInt(-1);
 
+/** `token`: of a driver, for the gateway; `quality=full`: pictures never get coarser, however slow they are. */
+const parameters = new URLSearchParams(location.search);
+
 function socketUrl(): string {
   const url = new URL('ws', location.href);
   url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
   url.hash = '';
-  const token = new URLSearchParams(location.search).get('token');
+  const token = parameters.get('token');
   url.search = token === null ? '' : `?token=${encodeURIComponent(token)}`;
   return url.href;
 }
@@ -42,7 +45,7 @@ const empty = h('p', { class: 'empty-scene', hidden: true });
 const floorText = h('span', { class: 'num' });
 const stageArea = h('section', { class: 'stage', 'aria-label': 'Scene' }, canvas, empty);
 document.body.append(stageArea); // the picture's size is known from here on
-const view = new SceneView(canvas, { ...initialLook });
+const view = new SceneView(canvas, { ...initialLook }, parameters.get('quality') !== 'full');
 
 let selection: Selection;
 const transport = new WorkerTransport();

@@ -20,6 +20,7 @@ interface Strip {
   title: string;
   unit: string;
   digits: number;
+  least: number; // the range of values is no smaller
   curves: Curve[];
   /** Which of the data columns its curves are. */
   columns: () => { times: number[]; values: (number | null)[][] };
@@ -100,6 +101,7 @@ export class Charts {
         title: 'Force',
         unit: 'N',
         digits: 2,
+        least: 0.1,
         curves: named(devices),
         columns: ofMoments(devices.length, ({ devices: d }, i) =>
           d && d.force.length >= 3 * i + 3 ? Math.hypot(d.force[3 * i] as number, d.force[3 * i + 1] as number, d.force[3 * i + 2] as number) : null,
@@ -109,15 +111,17 @@ export class Charts {
         title: 'Friction ratio',
         unit: '',
         digits: 2,
+        least: 0.1,
         curves: named(fingers),
         columns: ofMoments(fingers.length, (moment, i) => finite(this.input.friction(moment)[i])),
       },
-      { title: 'Tick', unit: 'µs', digits: 1, curves: meanAndMax, columns: pace('tickMean', 'tickMax') },
-      { title: 'Wake-up', unit: 'µs', digits: 1, curves: meanAndMax, columns: pace('wakeupMean', 'wakeupMax') },
+      { title: 'Tick', unit: 'µs', digits: 1, least: 10, curves: meanAndMax, columns: pace('tickMean', 'tickMax') },
+      { title: 'Wake-up', unit: 'µs', digits: 1, least: 10, curves: meanAndMax, columns: pace('wakeupMean', 'wakeupMax') },
       {
         title: 'Energy given',
         unit: 'J',
         digits: 4,
+        least: 0.01,
         curves: named(devices),
         columns: ofMoments(devices.length, ({ devices: d }, i) => finite(d?.energy[i])),
       },
@@ -145,7 +149,7 @@ export class Charts {
         padding: [6, 6, 0, 0],
         scales: {
           x: { time: false, range: () => this.range },
-          y: { range: (_plot, low, high) => [Math.min(0, low ?? 0), Math.max(high ?? 0, 1e-6) * 1.08] },
+          y: { range: (_plot, low, high) => [Math.min(0, low ?? 0), Math.max(high ?? 0, strip.least) * 1.08] },
         },
         axes: [
           {
@@ -156,9 +160,9 @@ export class Charts {
             ticks,
             grid: { stroke: grid, width: 1 },
             splits: (_plot, _axis, low, high) => this.splits(low, high),
-            values: (_plot, values) => values.map((value) => `${Number((value - this.player.time).toFixed(1))} s`),
+            values: (_plot, values) => values.map((value) => `${Number((value - this.origin).toFixed(1))} s`),
           },
-          { stroke: axis, font, size: 38, gap: 3, ticks, grid: { stroke: grid, width: 1 } },
+          { stroke: axis, font, size: 46, gap: 3, ticks, grid: { stroke: grid, width: 1 } },
         ],
         series: [{}, ...strip.curves.map((curve) => ({ label: curve.name, stroke: curve.colour, width: 1.5, points: { show: false }, spanGaps: false }))],
         hooks: {
@@ -187,12 +191,17 @@ export class Charts {
     return { strip, plot, readouts, root };
   }
 
-  /** Whole seconds before and after the shown time. */
+  /** Where times are counted from: now, or a recording's start. */
+  private get origin(): number {
+    return this.player.source.live ? this.player.end : this.player.start;
+  }
+
+  /** Whole seconds from there. */
   private splits(low: number, high: number): number[] {
     const step = [1, 2, 5, 10].find((s) => (high - low) / s <= 7) ?? 10;
-    const now = this.player.time;
+    const { origin } = this;
     const all: number[] = [];
-    for (let k = Math.ceil((low - now) / step); now + k * step <= high; ++k) all.push(now + k * step);
+    for (let k = Math.ceil((low - origin) / step); origin + k * step <= high; ++k) all.push(origin + k * step);
     return all;
   }
 

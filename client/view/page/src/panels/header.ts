@@ -31,7 +31,7 @@ export class Header {
       { id: 'stop', class: 'stop', onclick: () => actions.stop(), title: 'All forces end at once, and a fault is latched (S)' },
       'STOP',
     );
-    this.live = h('button', { id: 'live', class: 'accent', hidden: true, onclick: () => actions.live() }, 'Back to live');
+    this.live = h('button', { id: 'live', class: 'accent', hidden: true, onclick: () => actions.live() }, 'Back to now');
     this.root = h(
       'header',
       { class: 'bar' },

@@ -59,7 +59,11 @@ export class Stage {
   private up = new Vector3(0, 1, 0);
   private wanted = true;
 
-  constructor(private readonly canvas: HTMLCanvasElement) {
+  /** `adapts`: where pictures are slow, they get coarser. */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly adapts: boolean,
+  ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -200,6 +204,7 @@ export class Stage {
 
   /** Fewer pixels, and then no shadows, where pictures are slow, as without a graphics card. */
   private adapt(): void {
+    if (!this.adapts) return;
     const now = performance.now();
     if (this.last > 0) {
       this.taken += now - this.last;

@@ -67,8 +67,9 @@ export class SceneView {
   constructor(
     canvas: HTMLCanvasElement,
     readonly look: Look,
+    adapts: boolean,
   ) {
-    this.stage = new Stage(canvas);
+    this.stage = new Stage(canvas, adapts);
     this.stage.scene.add(this.hips.root, this.hipForces.root, this.deviceForces.root, this.objectForces.root);
   }
 
