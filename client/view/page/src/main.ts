@@ -13,6 +13,7 @@ import type { Source } from './model/source';
 import { Banners } from './panels/banners';
 import { DevicesPanel } from './panels/devices';
 import { h, setClass, setText, time as timeText } from './panels/dom';
+import { FaultsPanel } from './panels/faults';
 import { Header } from './panels/header';
 import { LookPanel } from './panels/look';
 import { SelectionPanel } from './panels/selection';
@@ -70,6 +71,7 @@ const session = new Session(transport, socketUrl(), {
   scene: () => {
     if (player.source.live) useSource();
   },
+  faults: () => faultsPanel.show(session.faults),
   wrong: (text) => banners.note(text, 'wrong'),
   happened: (event) => {
     // the number in the header and the marks tell of missed ticks; faults have banners
@@ -95,6 +97,7 @@ const devicesPanel = new DevicesPanel({
   hand: (device) => hands.putBeside(device),
 });
 const selectionPanel = new SelectionPanel((picked) => select(picked));
+const faultsPanel = new FaultsPanel();
 const lookPanel = new LookPanel(view.look, () => view.applyLook(selection));
 const header = new Header({
   arm: () => void session.arm(),
@@ -161,6 +164,7 @@ document.body.append(
     panel('Selection', true, selectionPanel.root),
     panel('View', false, lookPanel.root),
     panel('Simulation', false, simulation),
+    panel('Faults', false, faultsPanel.list),
   ),
   timeline.root,
   fileInput,

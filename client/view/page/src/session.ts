@@ -2,7 +2,7 @@
 import { Client, type Listener, Refused } from './connection/client';
 import type { WorkerTransport } from './connection/worker_transport';
 import { Role } from './gen/haptic/v1/config_pb';
-import { Delivery, type Hello, type SceneDescription, type Status, Topic } from './gen/haptic/v1/control_pb';
+import { Delivery, type FaultList_FaultRecord, type Hello, type SceneDescription, type Status, Topic } from './gen/haptic/v1/control_pb';
 import type { DeviceStatus } from './gen/haptic/v1/device_pb';
 import { type Event, Event_Kind, type Frame, type Stats } from './gen/haptic/v1/telemetry_pb';
 import { markOf } from './model/marks';
@@ -10,6 +10,7 @@ import { momentOf, paceOf } from './model/moment';
 import { LIVE_SECONDS, makeSource, type Source } from './model/source';
 
 const PICTURES = 60; // Hz, of moments
+const SILENCE = 10_000; // ms before the same refusal is told again
 const POLL = 1000; // ms between two questions for status and devices
 
 export interface Watcher {
@@ -17,6 +18,7 @@ export interface Watcher {
   status(): void;
   devices(): void;
   scene(): void;
+  faults(): void;
   wrong(text: string): void;
   happened(event: Event): void;
 }
@@ -28,8 +30,11 @@ export class Session {
   status: Status | undefined;
   statuses: DeviceStatus[] = [];
   scene: SceneDescription | undefined;
+  /** Since the daemon's start; nothing if it does not tell them. */
+  faults: FaultList_FaultRecord[] | undefined;
   /** Frames that the daemon says this page was too slow for. */
   lostFrames = 0;
+  private complaint = { text: '', at: 0 };
   private startNs: bigint | undefined;
   private stats: Stats | undefined;
   private asking = 0n;
@@ -49,6 +54,7 @@ export class Session {
       gap: (gap) => {
         this.lostFrames += Number(gap.lastSequence - gap.firstSequence) + 1;
       },
+      refused: (message) => this.complain(message),
       lost: (reason, retry) => {
         clearInterval(this.pollTimer);
         this.hello = undefined;
@@ -58,6 +64,14 @@ export class Session {
       },
     };
     this.client = new Client(transport, url, listener);
+  }
+
+  /** The same again and again is told once in a while. */
+  private complain(message: string): void {
+    const now = performance.now();
+    if (message === this.complaint.text && now - this.complaint.at < SILENCE) return;
+    this.complaint = { text: message, at: now };
+    this.watcher.wrong(message);
   }
 
   get mayDrive(): boolean {
@@ -86,6 +100,7 @@ export class Session {
     try {
       await this.poll();
       await this.fetchScene();
+      await this.fetchFaults();
       const rate = this.status?.rateHz || 1000;
       const decimation = Math.max(1, Math.round(rate / PICTURES));
       const topic = [Topic.OBJECTS, Topic.HIPS, Topic.DEVICES];
@@ -115,8 +130,28 @@ export class Session {
     this.watcher.status();
   }
 
+  private async fetchFaults(): Promise<void> {
+    try {
+      this.faults = (await this.client.call({ case: 'listFaults', value: {} }, 'faults')).fault;
+    } catch {
+      this.faults = undefined; // a daemon from before there was the call
+    }
+    this.watcher.faults();
+  }
+
+  private async askScene(): Promise<SceneDescription> {
+    try {
+      return await this.client.call({ case: 'getScene', value: { embedMeshes: true } }, 'scene');
+    } catch (error) {
+      // its meshes may be larger than the daemon sends; the rest can be seen
+      const scene = await this.client.call({ case: 'getScene', value: {} }, 'scene');
+      this.watcher.wrong(`Meshes cannot be drawn: ${error instanceof Error ? error.message : String(error)}`);
+      return scene;
+    }
+  }
+
   private async fetchScene(): Promise<void> {
-    const scene = await this.client.call({ case: 'getScene', value: { embedMeshes: true } }, 'scene');
+    const scene = await this.askScene();
     this.source.scenes.set(scene.revision, scene);
     while (this.source.scenes.size > 8) {
       const [oldest] = this.source.scenes.keys();
@@ -144,7 +179,10 @@ export class Session {
   private hear(event: Event): void {
     this.source.marks.push(markOf(event, this.source.moments.newest?.time ?? 0));
     this.watcher.happened(event);
-    if (event.kind !== Event_Kind.TICKS_MISSED) void this.poll().catch(() => undefined);
+    if (event.kind === Event_Kind.TICKS_MISSED) return;
+    void this.poll().catch(() => undefined);
+    const isFault = [Event_Kind.FAULT_LATCHED, Event_Kind.FAULT_CLEARED, Event_Kind.FAULT_RECORDED].includes(event.kind);
+    if (isFault) void this.fetchFaults();
   }
 
   // --- what a driver may do; each tells what went wrong -------------------------------------------------------

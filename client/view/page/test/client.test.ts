@@ -32,7 +32,7 @@ let client: Client;
 beforeEach(() => {
   vi.useFakeTimers();
   transport = new FakeTransport();
-  listener = { greeted: vi.fn(), frame: vi.fn(), event: vi.fn(), gap: vi.fn(), lost: vi.fn(), connecting: vi.fn() };
+  listener = { greeted: vi.fn(), frame: vi.fn(), event: vi.fn(), gap: vi.fn(), refused: vi.fn(), lost: vi.fn(), connecting: vi.fn() };
   client = new Client(transport, 'ws://x/ws', listener);
   client.connect();
 });
@@ -59,9 +59,11 @@ test('a refusal has the words of the daemon', async () => {
   await expect(call).rejects.toMatchObject({ code: Error_Code.REFUSED, message: 'you may only look' });
 });
 
-test('what nobody has asked for is ignored', () => {
+test('of answers that nobody waits for only refusals are told', () => {
   transport.say({ case: 'response', value: { id: 99n, result: { case: 'done', value: {} } } });
-  expect(listener.lost).not.toHaveBeenCalled();
+  expect(listener.refused).not.toHaveBeenCalled();
+  transport.say({ case: 'response', value: { id: 99n, error: { code: Error_Code.REFUSED, message: 'another client moves it' } } });
+  expect(listener.refused).toHaveBeenCalledWith('another client moves it');
 });
 
 test('a lost connection ends open calls and is tried again, less and less often', async () => {

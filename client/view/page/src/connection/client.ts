@@ -27,6 +27,8 @@ export interface Listener {
   frame(frame: Frame): void;
   event(event: Event): void;
   gap(gap: Gap): void;
+  /** A request for which nobody waits, as the worker makes them for held devices, was refused. */
+  refused(message: string): void;
   /** `retry`: s until the next attempt. */
   lost(reason: string, retry: number): void;
   connecting(): void;
@@ -112,8 +114,7 @@ export class Client {
         this.listener.greeted(body.value);
         break;
       case 'response':
-        this.open.get(body.value.id)?.resolve(body.value);
-        this.open.delete(body.value.id);
+        this.answer(body.value);
         break;
       case 'frame':
         this.listener.frame(body.value);
@@ -133,6 +134,13 @@ export class Client {
       default: // of a newer gateway
         break;
     }
+  }
+
+  private answer(response: Response): void {
+    const open = this.open.get(response.id);
+    this.open.delete(response.id);
+    if (open) open.resolve(response);
+    else if (response.error && response.error.code !== Error_Code.NOTHING_TO_DO) this.listener.refused(response.error.message);
   }
 
   private lose(reason: string): void {
