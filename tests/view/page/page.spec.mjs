@@ -74,7 +74,7 @@ test('a browser that may only look can neither arm nor stop', async ({ lab, page
 
 test('a fault shows with what to do, and is cleared', async ({ lab, page, quiet }) => {
   quiet.allow.push(/WebSocket/);
-  await lab.start('hands.txtpb');
+  await lab.start(lab.patientHands());
   const url = await lab.serve();
   await open(page, url);
   await page.locator('button.hand').first().click();

@@ -5,14 +5,14 @@ export default defineConfig({
   testDir: '.',
   testMatch: '*.spec.mjs',
   workers: 1,
-  timeout: 90_000,
+  timeout: 300_000,
   outputDir: process.env.HAPTIC_TEST_OUTPUT ?? 'test-results',
   snapshotPathTemplate: '{testDir}/screenshots/{arg}{ext}',
   reporter: [['list']],
   expect: {
-    timeout: 20_000,
+    timeout: 60_000,
     // fonts and rasterisers differ a little from machine to machine
-    toHaveScreenshot: { maxDiffPixelRatio: 0.03, threshold: 0.25, animations: 'disabled', timeout: 40_000 },
+    toHaveScreenshot: { maxDiffPixelRatio: 0.03, threshold: 0.25, animations: 'disabled', timeout: 60_000 },
   },
   use: {
     viewport: { width: 900, height: 640 },

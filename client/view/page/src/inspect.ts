@@ -10,7 +10,7 @@ export interface Drawn {
   objects: Record<string, [number, number, number]>; // m, world
   arrows: { hips: number[]; devices: number[]; objects: number[] }; // lengths, m
   arrowScale: number; // m/N
-  forces: { hips: number[]; devices: number[] }; // magnitudes that the shown moment tells, N; of those above 0
+  forces: { hips: number[]; devices: number[] }; // magnitudes that the drawn moment tells, N; of those above 0
   triangles: number;
   pictures: number;
   received: number; // bytes
@@ -41,7 +41,7 @@ export function inspectable(view: SceneView, session: Session, player: () => Pla
       return Object.fromEntries(shown.map(({ name, mesh }) => [name, mesh.position.toArray()]));
     },
     drawn(): Drawn {
-      const { moment } = player();
+      const moment = view.current;
       return {
         tick: moment?.tick,
         armed: moment?.armed,

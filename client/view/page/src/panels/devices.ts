@@ -42,7 +42,7 @@ class Card {
         h('span', { class: 'quiet' }, description.driver),
       ),
       this.phase,
-      h('div', { class: 'meter', hidden: !(description.maxForce > 0), title: `of ${number(description.maxForce, 'N', 1)} at most` }, this.bar),
+      h('div', { class: 'meter', title: `of ${number(description.maxForce, 'N', 1)} at most` }, this.bar),
       h('div', { class: 'cells' }, cell('force', this.force), cell('sample age', this.age), cell('speed', this.speed), cell('energy', this.energy)),
       this.more,
       canMove

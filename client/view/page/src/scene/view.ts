@@ -61,7 +61,9 @@ export class SceneView {
   size = 0.05; // m, radius of the scene
   hipRadius = 0.001; // m
   private revision: bigint | undefined;
-  private shown: Moment | undefined;
+  /** The moment that is drawn. */
+  current: Moment | undefined;
+  private stale = true; // what is drawn is not as it should be, though the moment is
   private readonly caster = new Raycaster();
 
   constructor(
@@ -81,7 +83,7 @@ export class SceneView {
     }
     this.objects = undefined;
     this.bodies = undefined;
-    this.shown = undefined;
+    this.current = undefined;
     this.revision = scene?.revision;
     if (!scene) {
       this.stage.draw();
@@ -122,13 +124,14 @@ export class SceneView {
       item.showCells(this.look, selection?.kind === 'object' && selection.index === item.index);
     }
     this.bodies?.select(selection?.kind === 'finger' ? selection.index : -1);
-    this.shown = undefined;
+    this.stale = true;
     this.stage.draw();
   }
 
   show(moment: Moment | undefined): void {
-    if (!moment || moment === this.shown || moment.revision !== this.revision) return;
-    this.shown = moment;
+    if (!moment || moment.revision !== this.revision || (moment === this.current && !this.stale)) return;
+    this.current = moment;
+    this.stale = false;
     const { look } = this;
     if (moment.objects) this.objects?.place(moment.objects);
     if (moment.devices) this.bodies?.place(moment.devices);
