@@ -1,6 +1,6 @@
 // A daemon, the gateway and the page, for one test.
 import { execFile, spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -35,6 +35,15 @@ export class Lab {
     const scene = join(root, 'config/scenes/hands.scene.txtpb');
     const device = (name) => `device { name: "${name}" virtual {} }\n`;
     writeFileSync(config, `${device('first_hand')}${device('second_hand')}safety { max_sample_age: 5 }\nscene: "${scene}"\n`);
+    return config;
+  }
+
+  /** A config of the tree that permits to arm whatever waits for the hands, which here are simulated. */
+  armable(name) {
+    const config = join(this.folder, 'armable.txtpb');
+    const text = readFileSync(join(root, 'config', name), 'utf8').replaceAll(/"(paths|scenes)\//g, `"${root}/config/$1/`);
+    const limit = 'max_arm_force: 100';
+    writeFileSync(config, text.includes('safety {') ? text.replace('safety {', `safety { ${limit}`) : `${text}\nsafety { ${limit} }\n`);
     return config;
   }
 
