@@ -62,7 +62,7 @@ const session = new Session(transport, socketUrl(), {
   status: () => {
     banners.showFaults(session.status?.fault ?? [], session.mayDrive);
     hands.mayDrive = session.mayDrive;
-    devicesPanel.setStatuses(session.statuses);
+    devicesPanel.setStatuses(player.source.live ? session.statuses : []);
     tellConnection();
   },
   devices: () => {
@@ -213,6 +213,7 @@ function usePlayer(next: Player): void {
   timeline.setPlayer(next);
   charts.setPlayer(next);
   hands.live = next.source.live;
+  devicesPanel.setStatuses(next.source.live ? session.statuses : []); // a recording does not tell them
   shownRevision = NEVER;
   banners.showLost(connectionState === 'down' && next.source.live ? connectionText : undefined);
   tellConnection();
