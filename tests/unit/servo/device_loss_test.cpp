@@ -220,6 +220,25 @@ TEST_F(DeviceLoss, ADeviceThatComesWhileOthersAreArmedGetsNoForceUntilSomebodyAr
   EXPECT_NEAR(pushed(rig, 0), 1.0, 1e-9);
 }
 
+TEST_F(DeviceLoss, WhatPushesAlreadyKeepsNoLateDeviceFromBeingArmed) {
+  ServoSettings limited = settings();
+  limited.limits.max_arm_force = 0.5;  // N; device 0 is pushed by 1 N
+  ServoRig rig(limited);
+  rig.device(1).sample.position = {0.0, 0.0, 0.01};
+  lose(rig, 1);
+  rig.device(0).sample.position = {0.0, 0.0, 0.01};
+  rig.tick();
+  rig.device(0).sample.position = {0.0, 0.0, -0.01};
+  arm(rig);
+  rig.tick();
+  ASSERT_NEAR(pushed(rig, 0), 1.0, 1e-9);
+  come_back(rig, 1);
+  rig.device(1).sample.position = {0.0, 0.0, 0.01};
+  rig.tick();
+  EXPECT_EQ(answer_to(rig, CommandKind::kArm), EventKind::kDone);
+  EXPECT_NEAR(pushed(rig, 0), 1.0, 1e-9);
+}
+
 TEST_F(DeviceLoss, ADeviceThatMustBeHomedAgainWhileArmedIsLost) {
   ServoRig rig(settings());
   press(rig);

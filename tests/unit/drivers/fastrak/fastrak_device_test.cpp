@@ -143,6 +143,26 @@ TEST(FastrakDevice, StationsOfOneTrackerAreDevicesThatShareItsPort) {
   EXPECT_TRUE(eventually([&] { return !tracker.sends; })) << "the last one tells it to be silent";
 }
 
+TEST(FastrakDevice, ATrackerThatFellSilentIsStartedOnceHoweverManyStationsItHas) {
+  test::SerialMock port;
+  EmulatedTracker tracker(port);
+  std::vector<std::unique_ptr<Device>> devices;
+  for (int station = 1; station <= 4; ++station) {
+    FastrakSettings patient = settings(port.path(), station);
+    patient.line.silence = milliseconds(1000);
+    devices.push_back(make_fastrak(patient));
+    devices.back()->start();
+  }
+  for (const auto& device : devices) ASSERT_TRUE(test::reaches(*device, DevicePhase::kReady));
+  const int starts = tracker.starts;
+  tracker.sends = false;
+  for (const auto& device : devices) {
+    ASSERT_TRUE(eventually([&] { return device->state().losses == 1; }));
+    ASSERT_TRUE(test::reaches(*device, DevicePhase::kReady));
+  }
+  EXPECT_EQ(tracker.starts, starts + 1);
+}
+
 // asked who it is by ^V, told to send by C, both with CR
 TEST(FastrakDevice, ServesALibertyByItsOwnProtocol) {
   test::SerialMock port;
