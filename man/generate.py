@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the manual pages from their prose, the programs' own help, and the comments of the schema.
 
-usage: generate.py --hapticd FILE --hapticctl FILE --haptic-bridge FILE [--check]
+usage: generate.py --hapticd FILE --hapticctl FILE --haptic-bridge FILE --haptic-view FILE [--check]
 
 man/source/PAGE holds the prose of each page in troff. A line of it that begins with @ is replaced:
   @verbs PROGRAM           each verb of hapticd or hapticctl with its arguments and options, from --help
@@ -239,9 +239,11 @@ def main():
     parser.add_argument("--hapticd", required=True)
     parser.add_argument("--hapticctl", required=True)
     parser.add_argument("--haptic-bridge", required=True)
+    parser.add_argument("--haptic-view", required=True)
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    programs = {"hapticd": options.hapticd, "hapticctl": options.hapticctl, "haptic-bridge": options.haptic_bridge}
+    programs = {"hapticd": options.hapticd, "hapticctl": options.hapticctl, "haptic-bridge": options.haptic_bridge,
+                "haptic-view": options.haptic_view}
     stale = []
     for source in sorted((MAN / "source").iterdir()):
         target, text = MAN / source.name, page(source, programs)

@@ -4,8 +4,8 @@
 #include <condition_variable>
 #include <utility>
 
-#include "client/bridge/backoff.h"
 #include "client/bridge/subject.h"
+#include "client/lib/backoff.h"
 #include "client/lib/error.h"
 
 namespace haptic::bridge {
@@ -95,7 +95,7 @@ void Bridge::set_link(bool is_daemon, bool connected, const std::string& text) {
 // --- the reader -------------------------------------------------------------------------------------------
 
 void Bridge::read(const std::stop_token& stop) {
-  Backoff backoff;
+  client::Backoff backoff;
   while (!stop.stop_requested()) {
     const Clock::time_point begin = Clock::now();
     try {
@@ -179,7 +179,7 @@ void Bridge::fetch_scene(client::Connection& daemon) {
 // --- the publisher ----------------------------------------------------------------------------------------
 
 void Bridge::publish(const std::stop_token& stop) {
-  Backoff backoff;
+  client::Backoff backoff;
   Clock::time_point opened = start_;
   while (!stop.stop_requested()) {
     try {

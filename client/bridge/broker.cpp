@@ -6,8 +6,8 @@
 #include <cstring>
 #include <random>
 
-#include "client/bridge/backoff.h"
 #include "client/bridge/subject.h"
+#include "client/lib/backoff.h"
 
 namespace haptic::bridge {
 namespace {
@@ -54,7 +54,8 @@ void require(natsStatus status, const std::string& what) {
 std::int64_t wait_before_attempt(natsConnection* /*connection*/, int attempts, void* /*closure*/) {
   thread_local std::minstd_rand chance{std::random_device{}()};
   const std::int64_t doublings = std::clamp(attempts - 1, 0, 10);
-  const std::int64_t wait = std::min<std::int64_t>(kFirstWait.count() << doublings, kLongestWait.count());
+  const std::int64_t wait =
+      std::min<std::int64_t>(client::kFirstWait.count() << doublings, client::kLongestWait.count());
   return wait + std::uniform_int_distribution<std::int64_t>(0, wait / 4)(chance);
 }
 

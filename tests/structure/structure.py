@@ -147,6 +147,10 @@ ROOMS = {
         ours=("client/lib", "proto", "schema"),
         libraries=("google/protobuf/", "CLI/", "nats/", "posix"),
     ),
+    "client/view": Room(
+        ours=("client/lib", "proto", "schema"),
+        libraries=("google/protobuf/", "boost/", "CLI/", "nlohmann/", "posix"),
+    ),
     "tests": Room(ours=("daemon", "drivers", "proto", "schema", "client"), libraries=("",)),
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace haptic::bridge {
+namespace haptic::client {
 
 inline constexpr std::chrono::milliseconds kFirstWait{100};
 inline constexpr std::chrono::milliseconds kLongestWait{5'000};
@@ -22,4 +22,4 @@ class Backoff {
   std::chrono::milliseconds wait_ = kFirstWait;
 };
 
-}  // namespace haptic::bridge
+}  // namespace haptic::client
