@@ -39,7 +39,7 @@ class AdversityTest(DaemonTest):
         """Frames of ticks that ascend, each of them or told as lost."""
         async with asyncio.timeout(PATIENCE):
             async with daemon.subscribe([haptic.Topic.HIPS]) as frames:
-                last = 0
+                last = -1
                 async for one in frames:
                     self.assertGreater(one.tick, last)
                     last = one.tick
