@@ -1,8 +1,22 @@
 #include "client/cli/options.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 namespace haptic::cli {
+namespace {
+
+// CLI11's ranges let nan in
+CLI::Validator a_number() {
+  return {[](const std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? text + " is not a number"
+                                                                               : std::string();
+          },
+          ""};
+}
+
+}  // namespace
 
 Option Option::required() const {
   made_->required();
@@ -35,12 +49,12 @@ Option Option::show_default() const {
 }
 
 Option Option::positive() const {
-  made_->check(CLI::PositiveNumber);
+  made_->check(CLI::PositiveNumber)->check(a_number());
   return *this;
 }
 
 Option Option::between(double least, double most) const {
-  made_->check(CLI::Range(least, most).description(""));
+  made_->check(CLI::Range(least, most).description(""))->check(a_number());
   return *this;
 }
 

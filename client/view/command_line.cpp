@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -128,7 +129,13 @@ void add_access_options(CLI::App& app, Choice& choice) {
 void add_limits(CLI::App& app, Choice& choice) {
   app.add_option("--rate", choice.options.frames_per_second,
                  "the most frames a second that a page gets; default: 60")
-      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            double rate = NAN;
+            const bool is_one = CLI::detail::lexical_cast(text, rate) && rate >= 1.0 && rate <= 1000.0;
+            return is_one ? std::string() : text + " is no rate between 1 and 1000";
+          },
+          ""))
       ->type_name("HZ");
   app.add_option("--clients", choice.options.web.sockets, "the most pages and viewers at once; default: 16")
       ->check(CLI::Range(1, 1000).description(""))

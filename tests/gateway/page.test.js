@@ -144,10 +144,10 @@ describe("a page with the token of a driver", () => {
 
   it("is one client of the daemon: another page does not take its device from it", async () => {
     const [first, second] = [await Page.open(gateway, asDriver), await Page.open(gateway, asDriver)];
-    await first.get(move(0.01));
+    const takes = (page) => eventually(async () => !(await page.ask(move(0.01))).error, "the one before has let go");
+    await takes(first);
     assert.equal((await second.ask(move(0.02))).error.code, Code.REFUSED);
-    await sleep(200); // it has let go
-    await second.get(move(0.02));
+    await takes(second);
     await Promise.all([first.close(), second.close()]);
   });
 

@@ -138,8 +138,9 @@ TEST_F(Hapticctl, MakesCertificatesWithWhichItIsLetIn) {
 }
 
 TEST_F(Hapticctl, ExitsWithSixtyFourWhenItIsMisused) {
-  for (const char* arguments : {"", "frobnicate", "status --nonsense", "step 0", "step -3",
-                                "watch --topic smell", "scene", "scene load", "watch --rate 0"}) {
+  for (const char* arguments :
+       {"", "frobnicate", "status --nonsense", "step 0", "step -3", "watch --topic smell", "scene",
+        "scene load", "watch --rate 0", "watch --rate nan", "latency --seconds nan"}) {
     const Finished result = run(arguments);
     EXPECT_EQ(result.code, 64) << arguments;
     EXPECT_TRUE(contains(result.output, "hapticctl: ")) << result.output;

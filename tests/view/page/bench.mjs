@@ -5,13 +5,12 @@
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
+import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
-import { fileURLToPath } from 'node:url';
 import { chromium } from '@playwright/test';
-import { startGateway } from './gateway.mjs';
+import { launchOptions } from './browser.mjs';
+import { root, startGateway } from './gateway.mjs';
 
-const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
 const hapticd = process.env.HAPTICD ?? join(root, 'build/dev/daemon/hapticd');
 const folder = mkdtempSync(join(tmpdir(), 'haptic-page-bench-'));
 const [seconds, json] = [Number(process.argv[2] ?? 5), process.argv[3]];
@@ -47,7 +46,7 @@ async function measure(browser, triangles) {
   const daemon = spawn(hapticd, ['run', '--config', configure(triangles), '--socket', socket], { stdio: 'ignore' });
   const ended = new Promise((resolve) => daemon.once('exit', resolve));
   while (!existsSync(socket)) await sleep(50);
-  const gateway = await startGateway({ page: process.env.HAPTIC_PAGE ?? join(root, 'client/view/page/dist'), socket });
+  const gateway = await startGateway({ socket });
   const page = await browser.newPage({ viewport: SIZE });
   const drawn = () => page.evaluate(() => globalThis.hapticView.drawn());
   await page.goto(`${gateway.url}?quality=full`);
@@ -72,10 +71,7 @@ async function measure(browser, triangles) {
   };
 }
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
-});
+const browser = await chromium.launch(launchOptions);
 const results = [];
 try {
   for (const triangles of [2_000, 20_000, 200_000]) {

@@ -2,16 +2,13 @@
 import { execFile, spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { join } from 'node:path';
 import { promisify } from 'node:util';
 import { expect, test as base } from '@playwright/test';
-import { startGateway } from './gateway.mjs';
+import { root, startGateway } from './gateway.mjs';
 
-const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
 const HAPTICD = process.env.HAPTICD ?? join(root, 'build/dev/daemon/hapticd');
 const HAPTICCTL = process.env.HAPTICCTL ?? join(root, 'build/dev/client/cli/hapticctl');
-const PAGE = process.env.HAPTIC_PAGE ?? join(root, 'client/view/page/dist');
 
 const run = promisify(execFile);
 
@@ -42,13 +39,12 @@ export class Lab {
   armable(name) {
     const config = join(this.folder, 'armable.txtpb');
     const text = readFileSync(join(root, 'config', name), 'utf8').replaceAll(/"(paths|scenes)\//g, `"${root}/config/$1/`);
-    const limit = 'max_arm_force: 100';
-    writeFileSync(config, text.includes('safety {') ? text.replace('safety {', `safety { ${limit}`) : `${text}\nsafety { ${limit} }\n`);
+    writeFileSync(config, `${text}\nsafety { max_arm_force: 100 }\n`);
     return config;
   }
 
   async serve(options = {}) {
-    this.gateway = await startGateway({ page: PAGE, socket: this.socket, ...options });
+    this.gateway = await startGateway({ socket: this.socket, ...options });
     return this.gateway.url;
   }
 

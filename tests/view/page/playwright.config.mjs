@@ -1,5 +1,6 @@
-// Debian's own browser, drawing without a graphics card: one test at a time, with patience.
+// A browser that draws without a graphics card: one test at a time, with patience.
 import { defineConfig } from '@playwright/test';
+import { launchOptions } from './browser.mjs';
 
 export default defineConfig({
   testDir: '.',
@@ -18,9 +19,6 @@ export default defineConfig({
     viewport: { width: 900, height: 640 },
     colorScheme: 'light',
     screenshot: 'only-on-failure',
-    launchOptions: {
-      executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
-    },
+    launchOptions,
   },
 });
