@@ -14,6 +14,7 @@ from haptic.errors import Invalid, Unreachable
 Streams = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
 _SHUTDOWN = 1.0  # s
+_QUEUE = 0.01  # s, between two looks whether there is room in it
 
 _ADVICE = {
     errno.ENOENT: "there is no socket; is hapticd running?",
@@ -56,11 +57,28 @@ def tls_context(identity: Identity) -> ssl.SSLContext:
     return context
 
 
+async def _open_unix(path: str) -> Streams:
+    """Waits while the daemon has more to let in than fits into its queue, which asyncio takes for a connection."""
+    stream = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        stream.setblocking(False)
+        while True:
+            try:
+                stream.connect(path)
+                break
+            except BlockingIOError:
+                await asyncio.sleep(_QUEUE)
+        return await asyncio.open_unix_connection(sock=stream)
+    except BaseException:
+        stream.close()
+        raise
+
+
 async def open_streams(address: Address, identity: Identity) -> Streams:
     """Raises Unreachable, or Invalid for files of TLS that cannot be used."""
     try:
         if address.path:
-            return await asyncio.open_unix_connection(address.path)
+            return await _open_unix(address.path)
         tls = tls_context(identity) if identity else None
         reader, writer = await asyncio.open_connection(
             address.host, address.port, ssl=tls, ssl_shutdown_timeout=_SHUTDOWN if tls else None)

@@ -2,12 +2,14 @@
 
 import asyncio
 import os
+import socket
 import unittest
 from unittest import mock
 
 import haptic
 from haptic import edits, v1
-from haptic.address import find_address, parse_address
+from haptic.address import Identity, find_address, parse_address
+from haptic.transport import open_streams
 from support import HAPTICCTL, PATIENCE, SCENE, DaemonTest, FakeDaemon, FakeDaemonTest
 
 
@@ -260,6 +262,22 @@ class OddDaemons(FakeDaemonTest):
         async with server:
             with self.assertRaisesRegex(haptic.Unreachable, "did not say hello within 0.05 s"):
                 await haptic.connect(self.folder / "mute.sock", timeout=0.05)
+
+    async def test_a_queue_that_is_full_is_waited_for(self) -> None:
+        with socket.socket(socket.AF_UNIX) as listener, socket.socket(socket.AF_UNIX) as first:
+            listener.bind(str(self.folder / "full.sock"))
+            listener.listen(0)  # one may wait
+            first.connect(str(self.folder / "full.sock"))
+            second = asyncio.create_task(open_streams(haptic.Address(path=str(self.folder / "full.sock")), Identity()))
+            done, _ = await asyncio.wait([second], timeout=0.05)
+            self.assertEqual(done, set())
+            listener.accept()[0].close()
+            async with asyncio.timeout(PATIENCE):
+                _, writer = await second
+            writer.write(b"in")
+            with listener.accept()[0] as accepted:
+                self.assertEqual(accepted.recv(2), b"in")
+            writer.close()
 
     async def test_messages_of_a_newer_daemon_are_skipped(self) -> None:
         async def talk(fake: FakeDaemon) -> None:
