@@ -29,7 +29,7 @@ v1::SceneDescription two_cells() {
   for (const double x : {0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 1., 1., 1.}) {
     mesh.add_vertex(x);
   }
-  for (const std::uint32_t vertex : {0, 1, 2, 3, 4, 1, 3, 2}) {
+  for (const std::uint32_t vertex : {0U, 1U, 2U, 3U, 4U, 1U, 3U, 2U}) {
     mesh.add_cell(vertex);
   }
   mesh.add_tag(1);
