@@ -119,10 +119,14 @@ export class Page {
     });
   }
 
-  /** A page that has got its hello. */
+  /** A page that has got its hello; fails at once where it is not let in. */
   static async open(gateway, query = "", options = {}) {
     const page = new Page(`${gateway.socketUrl}ws${query}`, options);
-    page.hello = (await eventually(() => page.messages.shift(), "hello")).hello;
+    let closed = false;
+    page.closed.then(() => (closed = true));
+    await eventually(() => page.messages.length > 0 || closed, "hello");
+    assert(page.messages.length > 0, "closed before hello");
+    page.hello = page.messages.shift().hello;
     return page;
   }
 
