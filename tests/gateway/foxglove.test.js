@@ -95,10 +95,13 @@ describe("a viewer", () => {
       assert.equal(value.devices.present.length, 2);
       assert(value.hips.position.length > 0);
       if (i > 0) {
-        assert(value.tick - frames[i - 1].value.tick >= LEAST - 1, `${value.tick}`);
+        assert(value.tick > frames[i - 1].value.tick);
         assert(time > frames[i - 1].time);
       }
     }
+    // one that was late does not put off the next
+    const ticks = frames.at(-1).value.tick - frames[0].value.tick;
+    assert(ticks / (frames.length - 1) > LEAST - 1, `${frames.length} frames in ${ticks} ticks`);
     await viewer.close();
   });
 
