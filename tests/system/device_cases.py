@@ -4,6 +4,7 @@ the packages give and no others."""
 import json
 from pathlib import Path
 
+from emulated_tracker import EmulatedTracker
 from machine import eventually
 from service_cases import CONFIG, SERVICE, OnTheMachine
 
@@ -20,6 +21,7 @@ CONFIGURED = f"""
 servo {{ rate_hz: 1000 priority: 80 lock_memory: true }}
 device {{ name: "falcon" falcon {{ firmware: "{FIRMWARE}" }} base {{ position {{ z: {-CENTRE} }} }} }}
 device {{ name: "mouse" spacemouse {{ speed: 0.1 reach: 0.2 }} }}
+device {{ name: "tracker" fastrak {{ port: "/dev/ttyUSB0" }} }}
 safety {{ max_sample_age: 5 max_missed_ticks: 100000 }}
 listen {{
   unix {{
@@ -260,4 +262,42 @@ class Spacemouse(WithDevices):
         return [float(word) for word in told.split()]
 
 
-CASES = (Falcon, Spacemouse)
+class Fastrak(WithDevices):
+    """On the USB serial port that QEMU has, of FTDI's kind."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.tracker = EmulatedTracker(cls.machine.serial)
+
+    def setUp(self):
+        super().setUp()
+        self.addCleanup(self.pull_out)
+        self.plug_in()
+
+    def plug_in(self):
+        self.run("modprobe", "xhci_pci")
+
+    def pull_out(self):
+        self.run("modprobe", "-r", "xhci_pci")
+        self.wait_for("tracker", "DEVICE_ABSENT")
+
+    def test_plugged_in_it_is_found_and_tells_where_its_station_is(self):
+        self.tracker.place = (10.0, -5.0, 20.0)
+        self.wait_for("tracker", "DEVICE_READY")
+        self.expect_position("tracker", (0.1, -0.05, 0.2), 1e-6)
+        self.tracker.place = (12.5, -5.0, 20.0)
+        self.expect_position("tracker", (0.125, -0.05, 0.2), 1e-6)
+
+    def test_its_node_belongs_to_a_group_of_the_daemon_and_not_to_everybody(self):
+        eventually(lambda: self.run("stat", "-c", "%G %a", "/dev/ttyUSB0", check=False).stdout == "dialout 660\n",
+                   "its node has its group", 20.0)
+
+    def test_pulled_out_it_is_gone_and_plugged_in_again_it_is_found(self):
+        self.wait_for("tracker", "DEVICE_READY")
+        self.pull_out()
+        self.plug_in()
+        self.wait_for("tracker", "DEVICE_READY")
+
+
+CASES = (Falcon, Spacemouse, Fastrak)

@@ -57,11 +57,13 @@ class VirtualMachine(Machine):
         self.console = cache / "console.log"
         self.accelerator = None
         self.qemu = None
-        self.host = None
+        self.host = None  # the agent's line
+        self.serial = None  # of the USB serial port, which the kernel sees when it is given the module xhci_pci
         self.received = b""
         system.add(Path(__file__).with_name("agent.py"), AGENT)
         system.write("/etc/systemd/system/tests-agent.service", UNIT)
         system.run("systemctl", "enable", "tests-agent.service")
+        system.write("/etc/modprobe.d/tests.conf", "blacklist xhci_pci\n")
         for name, place in (("vmlinuz", self.kernel), ("initrd.img", self.first_files)):
             shutil.copy(next(system.file("/boot").glob(f"{name}-*")), place)
         self.disk.unlink(missing_ok=True)
@@ -92,8 +94,9 @@ class VirtualMachine(Machine):
 
     def _start(self):
         self.host, guest = socket.socketpair()
+        self.serial, port = socket.socketpair()
         self.received = b""
-        with guest:
+        with guest, port:
             # it ends with who started it, however that ends
             self.qemu = subprocess.Popen(
                 ["setpriv", "--pdeathsig=KILL", "qemu-system-x86_64", "-accel", self.accelerator, "-cpu", "max",
@@ -103,9 +106,11 @@ class VirtualMachine(Machine):
                  "-append", "root=/dev/vda rw console=ttyS0 panic=-1 mitigations=off systemd.show_status=0",
                  "-drive", f"file={self.disk},if=virtio,format=raw,cache=unsafe",
                  "-chardev", f"socket,id=agent,fd={guest.fileno()}", "-device", "virtio-serial-pci",
-                 "-device", "virtserialport,chardev=agent,name=tests.agent"],
+                 "-device", "virtserialport,chardev=agent,name=tests.agent",
+                 "-chardev", f"socket,id=port,fd={port.fileno()}", "-device", "qemu-xhci",
+                 "-device", "usb-serial,chardev=port,always-plugged=on"],
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                pass_fds=[guest.fileno()])
+                pass_fds=[guest.fileno(), port.fileno()])
 
     def run(self, *command, user=None, check=True, given=b""):
         words = [*(["runuser", "-u", user, "--"] if user is not None else []), *map(str, command)]
@@ -156,4 +161,5 @@ class VirtualMachine(Machine):
         self.qemu.wait()
         self.qemu.stderr.close()
         self.host.close()
+        self.serial.close()
         self.qemu = None
