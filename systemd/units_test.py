@@ -5,6 +5,7 @@ usage: units_test.py FOLDER BINDIR    the folder of the units as they are instal
 Exit code 77 where there is no systemd-analyze.
 """
 
+import re
 import shutil
 import subprocess
 import sys
@@ -66,6 +67,17 @@ class Units(unittest.TestCase):
         self.assertIn("\nCapabilityBoundingSet=\n", text)
         self.assertIn("\nAmbientCapabilities=\n", text)
         self.assertIn("\nUser=hapticd\n", text)
+
+    def test_kinds_of_device_are_allowed_before_the_first_such_device_is_plugged_in(self):
+        text = (self.folder / "hapticd.service").read_text(encoding="utf-8")
+        kinds = re.findall(r"^DeviceAllow=char-(\S+) rw$", text, re.MULTILINE)
+        by_name = [kind for kind in kinds if not kind.isdigit()]
+        self.assertEqual(sorted(set(kinds) - set(by_name)), ["166", "188", "189"])
+        # whose module is loaded first, of which hidraw is a part of hid
+        for kind in by_name:
+            module = {"hidraw": "hid"}.get(kind, kind)
+            for order in ("Wants", "After"):
+                self.assertRegex(text, rf"(?m)^{order}=.*\bmodprobe@{module}\.service")
 
 
 if __name__ == "__main__":

@@ -205,9 +205,10 @@ void FlightRecorder::write() {
   const std::unique_ptr<Waiting> waiting = std::move(waiting_);
   const std::uint64_t before = ticks_of(settings_.seconds, services_.rate_hz);
   const std::uint64_t tick = waiting->first.tick();
-  flight::Excerpt excerpt{.session = {.program = "hapticd " + services_.version,
-                                      .daemon_version = services_.version,
-                                      .rate_hz = services_.rate_hz},
+  recording::Session session{.program = "hapticd " + services_.version,
+                             .daemon_version = services_.version,
+                             .rate_hz = services_.rate_hz};
+  flight::Excerpt excerpt{.session = std::move(session),
                           .first_tick = tick - std::min(tick, before),
                           .entries = tape_.hold(),
                           .scenes = {scenes_.begin(), scenes_.end()},

@@ -118,6 +118,9 @@ void TrackerLine::start_again() {
 }
 
 void TrackerLine::introduce(const std::function<void()>& go_on) {
+  // a port that is just being opened echoes: a tracker that sends hears itself, and may wait for the end of a
+  // command that is none
+  send("\r");
   send(silence_command(settings_.model));
   std::this_thread::sleep_for(settings_.settle);
   port_->drain(settings_.command);

@@ -28,8 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLatency{1};
-constexpr std::size_t kPacketBytes = 64;
-constexpr std::array<std::uint8_t, 2> kStatus = {0x31, 0x60};
 constexpr std::uint8_t kFromDevice = 0x80;
 
 // usbfs numbers its requests in 'U'
@@ -58,63 +56,6 @@ std::string hex4(unsigned value) {
   std::array<char, 5> digits{};
   (void)std::snprintf(digits.data(), digits.size(), "%04x", value & 0xFFFFU);
   return digits.data();
-}
-
-/// Device, configuration, one vendor interface, bulk in 0x81 and out 0x02.
-std::vector<std::uint8_t> descriptors(const UsbIdentity& identity) {
-  const auto low = [](unsigned value) { return static_cast<std::uint8_t>(value & 0xFFU); };
-  const auto high = [](unsigned value) { return static_cast<std::uint8_t>(value >> 8U); };
-  const auto serial = static_cast<std::uint8_t>(identity.serial.empty() ? 0 : 3);
-  return {18,
-          1,
-          0x00,
-          0x02,
-          0,
-          0,
-          0,
-          64,
-          low(identity.vendor),
-          high(identity.vendor),
-          low(identity.product),
-          high(identity.product),
-          0x00,
-          0x04,
-          0,
-          0,
-          serial,
-          1,
-          9,
-          2,
-          32,
-          0,
-          1,
-          1,
-          0,
-          0x80,
-          45,
-          9,
-          4,
-          0,
-          0,
-          2,
-          0xFF,
-          0xFF,
-          0xFF,
-          0,
-          7,
-          5,
-          0x81,
-          2,
-          64,
-          0,
-          0,
-          7,
-          5,
-          0x02,
-          2,
-          64,
-          0,
-          0};
 }
 
 /// One transfer that the host wants: the memory of its process, as umockdev shows it.
@@ -182,7 +123,7 @@ void UsbMock::Impl::plug_in() {
       "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=00" + number +
       "\nA: busnum=1\\n\nA: devnum=" + number + "\\n\nA: speed=12\\n\nA: bConfigurationValue=1\\n" +
       "\nA: idVendor=" + hex4(identity.vendor) + "\\n\nA: idProduct=" + hex4(identity.product) +
-      "\\n\nH: descriptors=" + hex(descriptors(identity)) + "\n";
+      "\\n\nH: descriptors=" + hex(usb_descriptors(identity)) + "\n";
   // who answers comes first, then the node: a driver may open it as soon as it is told of
   handler = umockdev_ioctl_base_new();
   signal = g_signal_connect(handler, "handle-ioctl", G_CALLBACK(&Impl::handle), this);
@@ -282,12 +223,8 @@ void UsbMock::Impl::control_request(Urb& urb) {
     function.control(bytes[1], value);
     return finish(urb, 0, bytes.size() - 8);
   }
-  // of what can be read only strings are: the languages, and the serial
-  std::vector<std::uint8_t> text = {4, 3, 0x09, 0x04};
-  if ((value & 0xFFU) == 3) {
-    text = {static_cast<std::uint8_t>(2 + 2 * identity.serial.size()), 3};
-    for (const char c : identity.serial) text.insert(text.end(), {static_cast<std::uint8_t>(c), 0});
-  }
+  // of what can be read only strings are
+  const std::vector<std::uint8_t> text = usb_string(identity, static_cast<std::uint8_t>(value & 0xFFU));
   const std::size_t count = std::min(text.size(), bytes.size() - 8);
   std::copy_n(text.begin(), count, bytes.begin() + 8);
   finish(urb, 0, count);
@@ -295,11 +232,10 @@ void UsbMock::Impl::control_request(Urb& urb) {
 
 bool UsbMock::Impl::give_data(Urb& urb, bool even_if_none) {
   const std::span<std::uint8_t> bytes = urb.bytes();
-  const std::vector<std::uint8_t> data = function.in(std::min(bytes.size(), kPacketBytes) - kStatus.size());
-  if (data.empty() && !even_if_none) return false;
-  std::copy(kStatus.begin(), kStatus.end(), bytes.begin());
-  std::copy(data.begin(), data.end(), bytes.begin() + kStatus.size());
-  finish(urb, 0, kStatus.size() + data.size());
+  const std::vector<std::uint8_t> packet = usb_packet(function, bytes.size());
+  if (packet.size() == kUsbStatusBytes && !even_if_none) return false;
+  std::copy(packet.begin(), packet.end(), bytes.begin());
+  finish(urb, 0, packet.size());
   return true;
 }
 

@@ -5,36 +5,16 @@
 // What the device does is a UsbFunction. Time is not that of hardware: an exchange costs about a millisecond,
 // so tests may wait for what must come, but never measure.
 
-#include <chrono>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "tests/support/mock_bus.h"
+#include "tests/support/usb_function.h"
 
 namespace haptic::test {
 
-/// What the device does; called under a lock.
-struct UsbFunction {
-  std::function<void(std::uint8_t request, std::uint16_t value)> control;
-  std::function<void(std::span<const std::uint8_t>)> out;
-  /// At most that many bytes for the host, none if there are none.
-  std::function<std::vector<std::uint8_t>(std::size_t)> in;
-};
-
-struct UsbIdentity {
-  std::uint16_t vendor = 0;
-  std::uint16_t product = 0;
-  std::string serial{};  // empty: it has none
-  int port = 1;          // 1 to 9; two devices need different ones
-};
-
-/// An FTDI bridge with something behind it: two status bytes before each packet, and one of them alone every
-/// millisecond while there is nothing to say.
+/// The bridge with something behind it, which is called under a lock; the status alone comes every
+/// millisecond.
 class UsbMock {
  public:
   /// Plugs it in.

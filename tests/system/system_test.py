@@ -1,299 +1,112 @@
 #!/usr/bin/env python3
 """The packages on a bare Debian 12 with its own systemd: installed, started, used, killed, upgraded, removed.
 
-usage: system_test.py PACKAGES CACHE [unittest's arguments]
+usage: system_test.py container|qemu PACKAGES CACHE [unittest's arguments]
 
-PACKAGES is the folder with the .deb files, CACHE keeps the bare system from one run to the next. Needs root, mmdebstrap
-and systemd-nspawn. Where root may not raise limits, as in many containers, the daemon runs without real-time rights.
+container: systemd-nspawn, fast; where root may not raise limits, as in many containers, the daemon runs without
+real-time rights. qemu: a machine with Debian's own kernel, where devices are plugged in, too; EMULATED_FALCON names the
+program that is one. PACKAGES is the folder with the .deb files, CACHE keeps the bare system from one run to the next.
+Needs root.
 """
 
-import json
 import os
+import re
 import shutil
 import signal
 import sys
-import tempfile
 import time
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import device_cases  # noqa: E402
 import package  # noqa: E402
-import thread  # noqa: E402
-from machine import Machine, eventually  # noqa: E402
+import realtime_cases  # noqa: E402
+import service_cases  # noqa: E402
+from container import Container  # noqa: E402
+from debian import Debian  # noqa: E402
+from service_cases import CONFIG, HALT, INSTALLED, SERVICE, OnTheMachine  # noqa: E402
+from virtual_machine import VirtualMachine  # noqa: E402
 
-SERVICE, SOCKET = "hapticd.service", "hapticd.socket"
-CONFIG = "/etc/hapticd/hapticd.txtpb"
-INSTALLED = ("hapticd", "hapticctl", "haptic-bridge", "python3-haptic")
+HERE = Path(__file__).resolve().parent
+TOOLS = {"container": ("mmdebstrap", "systemd-nspawn", "nsenter", "dpkg-deb"),
+         "qemu": ("mmdebstrap", "systemd-nspawn", "mkfs.ext4", "qemu-system-x86_64", "setpriv", "dpkg-deb")}
 # systemd of a container may not raise the limit by which the servo thread gets its priority, but can give one itself
 CONTAINER = "[Service]\nCPUSchedulingPolicy=fifo\nCPUSchedulingPriority=20\nLimitRTTIME=infinity\n"
-# exit codes of hapticctl
-DONE, REFUSED, UNREACHABLE = 0, 4, 5
-
-
-class OnTheMachine(unittest.TestCase):
-    machine = None
-    packages = {}
-
-    def setUp(self):
-        self.run = self.machine.run
-        self.run("systemctl", "reset-failed", SERVICE, check=False)
-        self.run("systemctl", "start", SOCKET, SERVICE)
-
-    def ctl(self, user, *arguments):
-        return self.run("hapticctl", *arguments, user=user, check=False)
-
-    def main_process(self):
-        return int(self.machine.show(SERVICE, "MainPID"))
-
-    def write_config(self, text):
-        """Replaces it for the length of a test; the daemon is told by the test."""
-        file = self.machine.file(CONFIG)
-        before = file.read_text(encoding="utf-8")
-
-        def put_back():
-            file.write_text(before, encoding="utf-8")
-            self.run("systemctl", "restart", SERVICE)
-
-        self.addCleanup(put_back)
-        file.write_text(text, encoding="utf-8")
-
-    def config(self):
-        return self.machine.file(CONFIG).read_text(encoding="utf-8")
-
-    def wait_for_new_process(self, old):
-        eventually(lambda: self.machine.show(SERVICE, "ActiveState") == "active" and self.main_process() != old,
-                   "the daemon is back")
-
-    def arm(self):
-        # forces may be near their limit just then, or a tick late: armed is what must be, once
-        eventually(lambda: self.ctl("driver", "arm").returncode in (DONE, 2), "the daemon arms", 20.0)
-
-    def is_armed(self):
-        return json.loads(self.run("hapticctl", "--json", "status", user="viewer").stdout).get("armed", False)
-
-
-class Service(OnTheMachine):
-    def test_is_ready_after_boot_as_its_own_user_without_any_capability(self):
-        self.assertEqual(self.machine.show(SERVICE, "ActiveState"), "active")
-        self.assertEqual(self.machine.show(SERVICE, "StatusText"), "2 devices at 1000 Hz")
-        process = self.main_process()
-        status = self.run("cat", f"/proc/{process}/status").stdout
-        user = self.run("id", "-u", "hapticd").stdout.strip()
-        self.assertIn(f"Uid:\t{user}\t{user}\t{user}\t{user}", status)
-        for kind in ("CapInh", "CapPrm", "CapEff", "CapBnd", "CapAmb"):
-            self.assertIn(f"{kind}:\t0000000000000000", status)
-        self.assertIn("NoNewPrivs:\t1", status)
-        self.assertIn("Seccomp:\t2", status)
-
-    def test_tells_ready_only_when_the_servo_thread_keeps_its_period(self):
-        self.run("systemctl", "stop", SERVICE)
-        since = time.time()
-        self.run("systemctl", "start", SERVICE)  # comes back when it is ready
-        self.assertRegex(self.machine.journal(SERVICE, since), r"ready: the servo thread runs (9|10)\d\d ticks")
-
-    def test_has_its_directories(self):
-        for path, owner, mode in (("/run/hapticd", "hapticd", "755"), ("/var/lib/hapticd", "hapticd", "750"),
-                                  ("/var/log/hapticd", "hapticd", "750"), ("/etc/hapticd", "root", "755")):
-            self.assertEqual(self.run("stat", "-c", "%U %a", path).stdout.strip(), f"{owner} {mode}", path)
-
-    def test_cannot_write_elsewhere_nor_read_homes(self):
-        process = self.main_process()
-        inside = ("nsenter", f"--target={process}", "--mount", "--")
-        self.assertNotEqual(self.run(*inside, "touch", "/usr/evil", check=False).returncode, 0)
-        self.assertNotEqual(self.run(*inside, "touch", "/etc/evil", check=False).returncode, 0)
-        self.assertNotEqual(self.run("touch", "/etc/hapticd/evil", user="hapticd", check=False).returncode, 0)
-        self.assertEqual(self.run(*inside, "ls", "-A", "/home", check=False).stdout, "")
-
-    def test_check_finds_the_shipped_config_right(self):
-        self.run("hapticd", "check", "--config", CONFIG)
-
-
-class Roles(OnTheMachine):
-    def test_a_driver_arms_and_disarms(self):
-        self.arm()
-        self.assertEqual(self.ctl("driver", "disarm").returncode, DONE)
-
-    def test_a_viewer_observes_and_is_refused_to_arm(self):
-        self.assertEqual(self.ctl("viewer", "status").returncode, DONE)
-        self.assertEqual(self.ctl("viewer", "arm").returncode, REFUSED)
-        self.assertFalse(self.is_armed())
-
-    def test_a_stranger_does_not_even_connect(self):
-        refused = self.ctl("stranger", "status")
-        self.assertEqual(refused.returncode, UNREACHABLE)
-        self.assertIn("permission denied", refused.stdout)
-
-    def test_python_observes_as_its_user(self):
-        told = self.run("python3", "-c", "import asyncio, haptic\n"
-                        "async def main():\n"
-                        "    async with haptic.connect() as daemon:\n"
-                        "        print((await daemon.status()).clients)\n"
-                        "asyncio.run(main())", user="viewer")
-        self.assertEqual(told.stdout.strip(), "1")
-
-
-class Sockets(OnTheMachine):
-    def test_a_client_wakes_the_daemon_that_was_stopped(self):
-        self.run("systemctl", "stop", SERVICE)
-        self.assertEqual(self.machine.show(SERVICE, "ActiveState"), "inactive")
-        self.assertEqual(self.ctl("viewer", "status").returncode, DONE)
-        self.assertEqual(self.machine.show(SERVICE, "ActiveState"), "active")
-
-    def test_the_daemon_opens_its_own_socket_where_the_socket_unit_is_disabled(self):
-        self.run("systemctl", "stop", SERVICE, SOCKET)
-        self.run("systemctl", "mask", "--runtime", SOCKET)
-        self.addCleanup(self.run, "systemctl", "stop", SERVICE)
-        self.addCleanup(self.run, "systemctl", "unmask", "--runtime", SOCKET)
-        self.run("systemctl", "start", SERVICE)
-        self.assertEqual(self.ctl("viewer", "status").returncode, DONE)
-        self.assertEqual(self.ctl("stranger", "status").returncode, UNREACHABLE)
-
-
-class Failures(OnTheMachine):
-    def test_a_daemon_that_is_killed_comes_back_disarmed(self):
-        self.arm()
-        old = self.main_process()
-        self.run("systemctl", "kill", "--kill-whom=main", "--signal=KILL", SERVICE)
-        self.wait_for_new_process(old)
-        self.assertFalse(self.is_armed())
-
-    def test_a_daemon_that_hangs_is_killed_by_the_watchdog_and_comes_back_disarmed(self):
-        self.arm()
-        old = self.main_process()
-        since = time.time()
-        self.run("systemctl", "kill", "--kill-whom=main", "--signal=STOP", SERVICE)
-        self.wait_for_new_process(old)
-        self.assertIn("Watchdog timeout", self.machine.journal(SERVICE, since))
-        self.assertFalse(self.is_armed())
-
-    def test_a_servo_thread_that_hangs_alone_is_enough(self):
-        old = self.main_process()
-        servo, rate = thread.busiest_thread(self.machine.process_here(old))
-        self.assertGreater(rate, 500.0)  # Hz; the io thread polls at that rate
-        since = time.time()
-        with thread.halted(servo):
-            eventually(lambda: "Watchdog timeout" in self.machine.journal(SERVICE, since), "the watchdog bites", 20.0)
-        self.wait_for_new_process(old)
-
-    def test_a_wrong_config_is_told_by_line_and_not_tried_for_ever(self):
-        self.write_config("servo {\n  rate_hz: 9e9\n}\n")
-        since = time.time()
-        self.run("systemctl", "restart", SERVICE, check=False)
-        eventually(lambda: self.machine.show(SERVICE, "ActiveState") == "failed", "it gives up")
-        self.assertIn(f"{CONFIG}:2:3: servo.rate_hz", self.machine.journal(SERVICE, since))
-        self.run("systemctl", "reset-failed", SERVICE, SOCKET, check=False)
-
-
-class Reload(OnTheMachine):
-    def test_takes_over_who_may_come_in_and_tells_what_needs_a_restart(self):
-        self.assertEqual(self.ctl("viewer", "status").returncode, DONE)
-        process = self.main_process()
-        config = self.config()
-        changed = config.replace('    allow { group: "haptic-view" role: OBSERVE }\n', "")
-        self.assertNotEqual(changed, config)
-        self.write_config(changed.replace("rate_hz: 1000", "rate_hz: 500"))
-        since = time.time()
-        self.run("systemctl", "reload", SERVICE)
-        eventually(lambda: self.ctl("viewer", "status").returncode == UNREACHABLE, "the group is out", 20.0)
-        self.assertEqual(self.ctl("driver", "status").returncode, DONE)
-        journal = self.machine.journal(SERVICE, since)
-        self.assertIn("changed: listen[0].unix.allow[1]", journal)
-        self.assertIn("changed, but needs a restart: servo.rate_hz", journal)
-        self.assertEqual((self.main_process(), self.machine.show(SERVICE, "ActiveState")), (process, "active"))
-
-    def test_keeps_everything_if_the_config_is_wrong(self):
-        process = self.main_process()
-        self.write_config(self.config() + "\nnonsense { }\n")
-        since = time.time()
-        self.run("systemctl", "reload", SERVICE)
-        eventually(lambda: "the config stays as it was" in self.machine.journal(SERVICE, since), "it is told", 20.0)
-        self.assertEqual(self.ctl("viewer", "status").returncode, DONE)
-        self.assertEqual(self.main_process(), process)
-
-
-class Bridge(OnTheMachine):
-    def test_waits_for_its_broker_as_a_user_of_its_own(self):
-        unit = "haptic-bridge@local.service"
-        self.addCleanup(self.run, "systemctl", "stop", unit)
-        self.run("systemctl", "start", unit)
-        time.sleep(1.0)  # s; there is no broker on the machine, and it must not mind
-        self.assertEqual(self.machine.show(unit, "ActiveState"), "active", self.machine.journal(unit))
-        self.assertEqual(self.machine.show(unit, "NRestarts"), "0")
-
-
-class Upgrade(OnTheMachine):
-    def install(self, version, changes=None):
-        with tempfile.TemporaryDirectory() as folder:
-            later = package.later_version(self.packages["hapticd"], version, Path(folder), changes)
-            shutil.copy(later, self.machine.file("/packages/later.deb"))
-        self.run("dpkg", "--force-confdef", "--force-confold", "-i", "/packages/later.deb")
-
-    def test_keeps_a_config_that_was_edited_and_restarts_the_daemon(self):
-        edited = self.config() + "# by hand\n"
-        self.machine.file(CONFIG).write_text(edited, encoding="utf-8")
-        old = self.main_process()
-        self.install("9:1")
-        self.assertEqual(self.config(), edited)
-        self.wait_for_new_process(old)
-        self.assertEqual(self.ctl("viewer", "status").returncode, DONE)
-
-        self.install("9:2", {CONFIG: "# another default\n"})
-        self.assertEqual(self.config(), edited)
-        self.assertEqual(self.machine.file(f"{CONFIG}.dpkg-dist").read_text(encoding="utf-8"), "# another default\n")
-        self.machine.file(f"{CONFIG}.dpkg-dist").unlink()
-
-
-class Removal(OnTheMachine):
-    def test_purge_leaves_nothing_but_the_user_and_the_groups(self):
-        self.run("apt-get", "-q", "-y", "remove", *INSTALLED)
-        self.assertNotEqual(self.run("systemctl", "is-active", SERVICE, check=False).returncode, 0)
-        self.assertTrue(self.machine.file(CONFIG).exists())  # a config outlives the removal
-        self.run("dpkg", "--purge", *INSTALLED)
-        self.run("rm", "-rf", "/packages", f"/etc/systemd/system/{SERVICE}.d")
-        left = self.run("find", "/", "/run", "-xdev", "-iname", "*haptic*")
-        self.assertEqual(left.stdout, "")
-        self.assertEqual(self.run("getent", "passwd", "hapticd").returncode, 0)
+# an emulated processor stands still for as long as its host likes, and what simulated hands do then is wild
+EMULATED = ("safety { max_missed_ticks: 100000 max_sample_age: 10 max_speed: 10 max_energy: 100 max_force: 5 "
+            "max_arm_force: 20 }")
 
 
 def load_tests(loader, _tests, _pattern):
-    """In this order: the last ones leave no service behind."""
-    cases = (Service, Roles, Sockets, Failures, Reload, Bridge, Upgrade, Removal)
+    only_there = (*realtime_cases.CASES, *device_cases.CASES) if KIND == "qemu" else ()
+    cases = (*service_cases.FIRST, *only_there, *service_cases.LAST)
     return unittest.TestSuite(loader.loadTestsFromTestCase(case) for case in cases)
 
 
-def setUpModule():
+def prepare(packages):
+    """A system with the packages, and what tests use beside them."""
+    system = Debian(CACHE, KIND, with_kernel=KIND == "qemu")
+    system.install([packages[name] for name in INSTALLED])
+    for user, group in (("driver", "haptic"), ("viewer", "haptic-view"), ("stranger", "nogroup")):
+        system.run("useradd", "--create-home", "--groups", group, user)
+    system.add(HERE / "thread.py", HALT)
+    return system
+
+
+def make_machine(system):
+    if KIND == "container":
+        system.write(f"/etc/systemd/system/{SERVICE}.d/container.conf", CONTAINER)
+        return Container(system.root, CACHE / "container.log")
+    device_cases.add_devices(system, FALCON)
+    config = system.file(CONFIG).read_text(encoding="utf-8")
+    system.write(CONFIG, re.sub(r"(?m)^safety \{.*\}$", EMULATED, config))
+    machine = VirtualMachine(system, CACHE)
+    system.remove()
+    return machine
+
+
+def run(arguments):
+    """All tests on a machine that lives as long as they do; whether they passed."""
     packages = package.find(PACKAGES)
     missing = [name for name in INSTALLED if name not in packages]
     if missing:
-        raise AssertionError(f"{PACKAGES} has no package {', '.join(missing)}; ./dev package makes them")
-    machine = Machine(CACHE)
-    unittest.addModuleCleanup(shutil.rmtree, machine.root, True)
-    unittest.addModuleCleanup(machine.stop)
-    machine.file("/packages").mkdir()
-    for name in INSTALLED:
-        shutil.copy(packages[name], machine.file("/packages"))
-    # with dependencies, on a system that has no systemd running yet
-    machine.offline("sh", "-c", "apt-get update -q && apt-get install -q -y --no-install-recommends /packages/*.deb")
-    for user, group in (("driver", "haptic"), ("viewer", "haptic-view"), ("stranger", "nogroup")):
-        machine.offline("useradd", "--create-home", "--groups", group, user)
-    dropin = machine.file(f"/etc/systemd/system/{SERVICE}.d/container.conf")
-    dropin.parent.mkdir()
-    dropin.write_text(CONTAINER, encoding="utf-8")
-    machine.boot()
-    OnTheMachine.machine = machine
-    OnTheMachine.packages = packages
+        sys.exit(f"{PACKAGES} has no package {', '.join(missing)}; ./dev package makes them")
+    begin = time.monotonic()
+    system = prepare(packages)
+    machine = make_machine(system)
+    prepared = time.monotonic()
+    try:
+        machine.boot()
+        booted = time.monotonic()
+        print(f"{KIND}: prepared in {prepared - begin:.0f} s, booted in {booted - prepared:.0f} s; {machine.kind()}",
+              file=sys.stderr, flush=True)
+        OnTheMachine.machine = machine
+        OnTheMachine.packages = packages
+        done = unittest.main(argv=[sys.argv[0], *arguments], verbosity=2, exit=False)
+        print(f"{KIND}: tested in {time.monotonic() - booted:.0f} s", file=sys.stderr)
+        return done.result.wasSuccessful()
+    finally:
+        machine.stop()
+        system.remove()
+
+
+def interrupt(*_):
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    # unittest takes sys.exit() for one more test that fails
+    raise KeyboardInterrupt
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
+    if len(sys.argv) < 4 or sys.argv[1] not in TOOLS:
         print(__doc__, file=sys.stderr)
         sys.exit(64)
+    KIND, PACKAGES, CACHE = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()
+    FALCON = Path(os.environ.get("EMULATED_FALCON", "build/release/tests/system/emulated_falcon")).resolve()
     if os.geteuid() != 0:
-        sys.exit("system_test.py: needs root, for mmdebstrap and systemd-nspawn")
-    for tool in ("mmdebstrap", "systemd-nspawn", "nsenter", "dpkg-deb"):
+        sys.exit("system_test.py: needs root, to make the file system of a machine")
+    for tool in TOOLS[KIND]:
         if shutil.which(tool) is None:
             sys.exit(f"system_test.py: there is no {tool}; ./dev test --system installs it")
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-    PACKAGES, CACHE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
+    signal.signal(signal.SIGTERM, interrupt)
+    sys.exit(0 if run(sys.argv[4:]) else 1)

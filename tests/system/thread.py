@@ -1,12 +1,19 @@
-"""One thread of a process, halted while the others go on: what no signal can do, a debugger can."""
+#!/usr/bin/python3
+"""One thread of a process, halted while the others go on: what no signal can do, a debugger can.
+
+usage: thread.py PROCESS    halts its busiest thread until the process is gone, for 20 s at the most, and tells how many
+                            times a second that thread ran
+"""
 
 import ctypes
 import os
+import sys
 import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH = 0x4206, 0x4207, 17
+PATIENCE = 20.0  # s
 WALL = 0x40000000  # linux/wait.h: threads as well
 
 LIBC = ctypes.CDLL(None, use_errno=True)
@@ -52,3 +59,28 @@ def halted(thread):
             # it was killed meanwhile, and is gone for its process when who traced it has seen that
             with suppress(ChildProcessError):
                 os.waitpid(thread, WALL)
+
+
+def has_ended(process, thread):
+    """Or is only still there for who traces it to see that."""
+    try:
+        return "State:\tZ" in Path(f"/proc/{process}/task/{thread}/status").read_text(encoding="utf-8")
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+
+
+def main(process):
+    thread, rate = busiest_thread(process)
+    print(rate)
+    deadline = time.monotonic() + PATIENCE
+    with halted(thread):
+        while not has_ended(process, thread):
+            if time.monotonic() > deadline:
+                sys.exit(f"process {process} has not minded for {PATIENCE:g} s")
+            time.sleep(0.1)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(int(sys.argv[1]))

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/support/device_life.h"
@@ -28,7 +29,9 @@ using test::eventually;
 /// garbage between. Station n is at (0.1 n, 0, 0.2).
 class EmulatedTracker {
  public:
-  explicit EmulatedTracker(test::SerialMock& port) : port_(port), thread_([this] { serve(); }) {}
+  /// `heard` of a command it has already.
+  explicit EmulatedTracker(test::SerialMock& port, std::string heard = "")
+      : port_(port), command_(std::move(heard)), thread_([this] { serve(); }) {}
   ~EmulatedTracker() {
     ending = true;
     thread_.join();
@@ -118,6 +121,15 @@ TEST(FastrakDevice, TellsWhereItsStationIsAndNotAnother) {
   EXPECT_FALSE(tracker.on[2]) << "one that nobody listens to takes no share of the records";
   device->stop();
   EXPECT_TRUE(eventually([&] { return !tracker.sends; })) << "it is told to be silent";
+}
+
+TEST(FastrakDevice, IsNotKeptOutByHalfACommandThatTheTrackerHeardBefore) {
+  test::SerialMock port;
+  EmulatedTracker tracker(port, "01 ^@^@HA");  // its own record, echoed before the port was set
+  tracker.sends = true;
+  const std::unique_ptr<Device> device = make_fastrak(settings(port.path()));
+  device->start();
+  EXPECT_TRUE(eventually([&] { return is_at(*device, place_of(1)); }));
 }
 
 TEST(FastrakDevice, StationsOfOneTrackerAreDevicesThatShareItsPort) {
