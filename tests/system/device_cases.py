@@ -6,7 +6,7 @@ from pathlib import Path
 
 from emulated_tracker import EmulatedTracker
 from machine import eventually
-from service_cases import CONFIG, SERVICE, OnTheMachine
+from service_cases import CONFIG, FAULT_LATCHED, SERVICE, OnTheMachine
 
 HERE = Path(__file__).resolve().parent
 PLACE = "/usr/local/lib/tests"
@@ -188,7 +188,7 @@ class Falcon(WithDevices):
         self.plug_in()
         self.expect_position("falcon", (0.0, 0.0, 0.0), 1e-4)
         self.assertFalse(self.is_armed())
-        self.assertEqual(self.ctl("driver", "arm").returncode, 7)  # the fault is still latched
+        self.assertEqual(self.ctl("driver", "arm").returncode, FAULT_LATCHED)
         self.run("hapticctl", "clear")
         self.wait_for("falcon", "DEVICE_READY")
         self.assertFalse(self.is_armed())

@@ -25,7 +25,7 @@ import realtime_cases  # noqa: E402
 import service_cases  # noqa: E402
 from container import Container  # noqa: E402
 from debian import Debian  # noqa: E402
-from service_cases import CONFIG, HALT, INSTALLED, SERVICE, OnTheMachine  # noqa: E402
+from service_cases import CONFIG, HALT, INSTALLED, SERVICE, SHIPPED, OnTheMachine  # noqa: E402
 from virtual_machine import VirtualMachine  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
@@ -33,9 +33,9 @@ TOOLS = {"container": ("mmdebstrap", "systemd-nspawn", "nsenter", "dpkg-deb"),
          "qemu": ("mmdebstrap", "systemd-nspawn", "mkfs.ext4", "qemu-system-x86_64", "setpriv", "dpkg-deb")}
 # systemd of a container may not raise the limit by which the servo thread gets its priority, but can give one itself
 CONTAINER = "[Service]\nCPUSchedulingPolicy=fifo\nCPUSchedulingPriority=20\nLimitRTTIME=infinity\n"
-# an emulated processor stands still for as long as its host likes, and what simulated hands do then is wild
-EMULATED = ("safety { max_missed_ticks: 100000 max_sample_age: 10 max_speed: 10 max_energy: 100 max_force: 5 "
-            "max_arm_force: 20 }")
+# a machine stands still for as long as its host likes, and what simulated hands do then is wild
+PATIENT = ("safety { max_missed_ticks: 100000 max_sample_age: 10 max_speed: 10 max_energy: 100 max_force: 5 "
+           "max_arm_force: 20 }")
 
 
 def load_tests(loader, _tests, _pattern):
@@ -51,6 +51,9 @@ def prepare(packages):
     for user, group in (("driver", "haptic"), ("viewer", "haptic-view"), ("stranger", "nogroup")):
         system.run("useradd", "--create-home", "--groups", group, user)
     system.add(HERE / "thread.py", HALT)
+    system.add(system.file(CONFIG), SHIPPED)
+    config = system.file(CONFIG).read_text(encoding="utf-8")
+    system.write(CONFIG, re.sub(r"(?m)^safety \{.*\}$", PATIENT, config))
     return system
 
 
@@ -59,8 +62,6 @@ def make_machine(system):
         system.write(f"/etc/systemd/system/{SERVICE}.d/container.conf", CONTAINER)
         return Container(system.root, CACHE / "container.log")
     device_cases.add_devices(system, FALCON)
-    config = system.file(CONFIG).read_text(encoding="utf-8")
-    system.write(CONFIG, re.sub(r"(?m)^safety \{.*\}$", EMULATED, config))
     machine = VirtualMachine(system, CACHE)
     system.remove()
     return machine

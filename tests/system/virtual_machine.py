@@ -84,7 +84,7 @@ class VirtualMachine(Machine):
                 self.ask(self._wish(["true"]), patience)
                 break
             except AssertionError:
-                self.stop()
+                self._end()
                 if accelerator != "kvm":
                     raise
         state = self.ask(self._wish(["systemctl", "is-system-running", "--wait"]), BOOT_PATIENCE)
@@ -104,7 +104,7 @@ class VirtualMachine(Machine):
                  "-nic", "none", "-serial", f"file:{self.console}", "-kernel", str(self.kernel),
                  "-initrd", str(self.first_files),
                  "-append", "root=/dev/vda rw console=ttyS0 panic=-1 mitigations=off systemd.show_status=0",
-                 "-drive", f"file={self.disk},if=virtio,format=raw,cache=unsafe",
+                 "-drive", f"file={self.disk},if=virtio,format=raw,cache=unsafe,snapshot=on",
                  "-chardev", f"socket,id=agent,fd={guest.fileno()}", "-device", "virtio-serial-pci",
                  "-device", "virtserialport,chardev=agent,name=tests.agent",
                  "-chardev", f"socket,id=port,fd={port.fileno()}", "-device", "qemu-xhci",
@@ -155,6 +155,10 @@ class VirtualMachine(Machine):
 
     def stop(self):
         """Without farewell: nobody wants its disk again."""
+        self._end()
+        self.disk.unlink(missing_ok=True)
+
+    def _end(self):
         if self.qemu is None:
             return
         self.qemu.kill()
