@@ -11,8 +11,9 @@ from machine import eventually
 
 SERVICE, SOCKET = "hapticd.service", "hapticd.socket"
 CONFIG = "/etc/hapticd/hapticd.txtpb"
-INSTALLED = ("hapticd", "hapticctl", "haptic-bridge", "python3-haptic")
+INSTALLED = ("hapticd", "hapticctl", "haptic-view", "haptic-bridge", "python3-haptic")
 HALT = "/usr/local/lib/tests/thread.py"  # where the machine has it
+BROWSE = "/usr/local/lib/tests/browse.py"
 SHIPPED = "/usr/local/lib/tests/shipped.txtpb"  # the config before it was made patient
 # exit codes of hapticctl
 DONE, NOTHING_TO_DO, REFUSED, UNREACHABLE, FAULT_LATCHED = 0, 2, 4, 5, 7
@@ -207,6 +208,23 @@ class Reload(OnTheMachine):
         self.assertEqual(self.main_process(), process)
 
 
+class View(OnTheMachine):
+    UNIT = "haptic-view.service"
+
+    def test_is_off_until_somebody_wants_it(self):
+        self.assertEqual(self.run("systemctl", "is-enabled", self.UNIT, check=False).stdout.strip(), "disabled")
+
+    def test_shows_the_page_and_the_daemon_as_a_user_of_its_own(self):
+        self.addCleanup(self.run, "systemctl", "stop", self.UNIT)
+        self.run("systemctl", "start", self.UNIT)
+        eventually(lambda: "serves http://127.0.0.1:8765" in self.machine.journal(self.UNIT), "it listens", 20.0)
+        seen = json.loads(self.run("python3", BROWSE, "127.0.0.1", "8765").stdout)
+        self.assertEqual(seen, {"page": "text/html", "script": "text/javascript",
+                                "upgrade": "HTTP/1.1 101 Switching Protocols", "hello": True})
+        process = self.machine.show(self.UNIT, "MainPID")
+        self.assertNotIn("Uid:\t0\t", self.run("cat", f"/proc/{process}/status").stdout)
+
+
 class Bridge(OnTheMachine):
     def test_waits_for_its_broker_as_a_user_of_its_own(self):
         unit = "haptic-bridge@local.service"
@@ -252,5 +270,5 @@ class Removal(OnTheMachine):
 
 
 # in this order: the last ones leave no service behind
-FIRST = (Service, Roles, Sockets, Failures, Reload, Bridge)
+FIRST = (Service, Roles, Sockets, Failures, Reload, View, Bridge)
 LAST = (Upgrade, Removal)

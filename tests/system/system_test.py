@@ -25,7 +25,7 @@ import realtime_cases  # noqa: E402
 import service_cases  # noqa: E402
 from container import Container  # noqa: E402
 from debian import Debian  # noqa: E402
-from service_cases import CONFIG, HALT, INSTALLED, SERVICE, SHIPPED, OnTheMachine  # noqa: E402
+from service_cases import BROWSE, CONFIG, HALT, INSTALLED, SERVICE, SHIPPED, OnTheMachine  # noqa: E402
 from virtual_machine import VirtualMachine  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
@@ -51,6 +51,7 @@ def prepare(packages):
     for user, group in (("driver", "haptic"), ("viewer", "haptic-view"), ("stranger", "nogroup")):
         system.run("useradd", "--create-home", "--groups", group, user)
     system.add(HERE / "thread.py", HALT)
+    system.add(HERE / "browse.py", BROWSE)
     system.add(system.file(CONFIG), SHIPPED)
     config = system.file(CONFIG).read_text(encoding="utf-8")
     system.write(CONFIG, re.sub(r"(?m)^safety \{.*\}$", PATIENT, config))
