@@ -11,7 +11,7 @@ import socket
 import sys
 import urllib.request
 
-BINARY = b"\x82"  # the first byte of a whole binary message, RFC 6455 section 5.2; what ends a WebSocket begins otherwise
+BINARY = b"\x82"  # how a whole binary message begins, RFC 6455 section 5.2; what ends a WebSocket begins otherwise
 
 
 def fetch(where, path):
