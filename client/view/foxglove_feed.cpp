@@ -41,7 +41,13 @@ FoxgloveFeed::FoxgloveFeed(boost::asio::io_context& io, const DaemonDoor& door, 
                            Log& log)
     : io_(io), door_(door), frames_per_second_(frames_per_second), log_(log), timer_(io) {}
 
-FoxgloveFeed::~FoxgloveFeed() { disconnect(); }
+FoxgloveFeed::~FoxgloveFeed() {
+  try {
+    disconnect();
+  } catch (const std::exception&) {
+    // a timer that cannot be cancelled says no more than that the program ends
+  }
+}
 
 void FoxgloveFeed::add(Listener& listener) {
   listeners_.push_back(&listener);

@@ -20,7 +20,7 @@ namespace {
 using Request = http::request<http::empty_body>;
 
 constexpr std::uint32_t kHeaderBytes = 16 * 1024;
-constexpr std::size_t kDrainedBytes = 256 * 1024;
+constexpr std::size_t kDrainedBytes = std::size_t{256} * 1024;
 constexpr const char* kServer = "haptic-view";
 
 // what the page is made of comes from here alone

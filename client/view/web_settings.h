@@ -20,14 +20,14 @@ struct WebSettings {
   std::string key;
   std::filesystem::path page;
   HouseRules rules;
-  std::size_t sockets = 16;                  // WebSockets at once
-  std::size_t connections = 128;             // of all kinds at once
-  std::size_t message_bytes = 64 * 1024;     // the longest message of a client
-  std::size_t unsent_bytes = 256 * 1024;     // in the system, for a client that does not read
-  std::chrono::seconds request{10};          // for TLS, and for a request to come
-  std::chrono::seconds answer{120};          // for a browser to take a file
-  std::chrono::seconds idle{60};             // without a sign of life of a WebSocket
-  std::chrono::milliseconds goodbye{2'000};  // for a client to take why its WebSocket is closed
+  std::size_t sockets = 16;                            // WebSockets at once
+  std::size_t connections = 128;                       // of all kinds at once
+  std::size_t message_bytes = std::size_t{64} * 1024;  // the longest message of a client
+  std::size_t unsent_bytes = std::size_t{256} * 1024;  // in the system, for a client that does not read
+  std::chrono::seconds request{10};                    // for TLS, and for a request to come
+  std::chrono::seconds answer{120};                    // for a browser to take a file
+  std::chrono::seconds idle{60};                       // without a sign of life of a WebSocket
+  std::chrono::milliseconds goodbye{2'000};            // for a client to take why its WebSocket is closed
 };
 
 using OnSocket = std::function<void(std::shared_ptr<WebSocket>, const Admission&)>;
