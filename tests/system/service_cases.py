@@ -214,15 +214,36 @@ class View(OnTheMachine):
     def test_is_off_until_somebody_wants_it(self):
         self.assertEqual(self.run("systemctl", "is-enabled", self.UNIT, check=False).stdout.strip(), "disabled")
 
-    def test_shows_the_page_and_the_daemon_as_a_user_of_its_own(self):
+    def start(self):
         self.addCleanup(self.run, "systemctl", "stop", self.UNIT)
+        since = time.time()
         self.run("systemctl", "start", self.UNIT)
-        eventually(lambda: "serves http://127.0.0.1:8765" in self.machine.journal(self.UNIT), "it listens", 20.0)
-        seen = json.loads(self.run("python3", BROWSE, "127.0.0.1", "8765").stdout)
-        self.assertEqual(seen, {"page": "text/html", "script": "text/javascript",
-                                "upgrade": "HTTP/1.1 101 Switching Protocols", "hello": True})
+        eventually(lambda: "serves http://127.0.0.1:8765" in self.machine.journal(self.UNIT, since), "it listens", 20.0)
+
+    def browse(self, *token):
+        return json.loads(self.run("python3", BROWSE, "127.0.0.1", "8765", *token).stdout)
+
+    def test_shows_the_page_and_the_daemon_as_a_user_of_its_own(self):
+        self.start()
+        self.assertEqual(self.browse(), {"page": "text/html", "script": "text/javascript",
+                                         "upgrade": "HTTP/1.1 101 Switching Protocols", "role": "OBSERVE"})
         process = self.machine.show(self.UNIT, "MainPID")
         self.assertNotIn("Uid:\t0\t", self.run("cat", f"/proc/{process}/status").stdout)
+
+    def test_lets_a_page_drive_with_a_token_as_the_manual_tells(self):
+        folder, token = f"/etc/systemd/system/{self.UNIT}.d", "0123456789abcdef"
+        self.addCleanup(self.run, "systemctl", "daemon-reload")
+        self.addCleanup(self.run, "rm", "-r", folder)
+        self.run("install", "-d", folder, "/etc/haptic-view")
+        self.machine.write("/etc/haptic-view/token", f"{token}\n")
+        self.machine.write(f"{folder}/drive.conf",
+                           "[Service]\nGroup=haptic\nLoadCredential=token:/etc/haptic-view/token\nExecStart=\n"
+                           "ExecStart=/usr/bin/haptic-view --server /run/hapticd/hapticd.sock "
+                           "--drive-token-file %d/token\n")
+        self.run("systemctl", "daemon-reload")
+        self.start()
+        self.assertEqual(self.browse()["role"], "OBSERVE")
+        self.assertEqual(self.browse(token)["role"], "DRIVE")
 
 
 class Bridge(OnTheMachine):
