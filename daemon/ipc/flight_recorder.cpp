@@ -210,18 +210,19 @@ void FlightRecorder::write() {
                              .rate_hz = services_.rate_hz};
   flight::Excerpt excerpt{.session = std::move(session),
                           .first_tick = tick - std::min(tick, before),
-                          .entries = tape_.hold(),
+                          .entries = {},
                           .scenes = {scenes_.begin(), scenes_.end()},
                           .devices = report_devices_()};
   written_faults_ = waiting->faults;
   not_kept_ = 0;
   try {
+    excerpt.entries = tape_.hold();
     writing_ = std::async(std::launch::async,
                           [excerpt = std::move(excerpt), settings = settings_, time = waiting->realtime_ns,
                            fault = metrics::word_of(waiting->first.kind())] {
                             return flight::save(excerpt, settings.directory, settings.keep, fault, time);
                           });
-  } catch (const std::system_error& error) {
+  } catch (const std::exception& error) {
     tape_.release();
     spdlog::warn("the fault in tick {} is not recorded: {}", tick, error.what());
   }
