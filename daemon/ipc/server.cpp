@@ -4,23 +4,20 @@
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <functional>
-#include <list>
 #include <map>
 #include <utility>
 
 #include "ipc/announcer.h"
 #include "ipc/convert.h"
 #include "ipc/device_watch.h"
+#include "ipc/entrances.h"
 #include "ipc/flight_recorder.h"
 #include "ipc/metrics_server.h"
 #include "ipc/reports.h"
 #include "ipc/session.h"
-#include "ipc/tls.h"
 #include "proto/metrics/exposition.h"
 
 namespace haptic::ipc {
@@ -29,18 +26,7 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr std::chrono::seconds kFlushPeriod{1};         // of the log
-constexpr std::chrono::milliseconds kAcceptPause{100};  // after an error, as when descriptors have run out
-
-using Local = asio::local::stream_protocol;
-using Tcp = asio::ip::tcp;
-
-std::vector<v1::Listen> or_default(std::vector<v1::Listen> listen) {
-  if (listen.empty()) {
-    listen.emplace_back().mutable_unix()->clear_path();
-  }
-  return listen;
-}
+constexpr std::chrono::seconds kFlushPeriod{1};  // of the log
 
 }  // namespace
 
@@ -59,6 +45,11 @@ class Server::Impl {
         lease_(settings_.drive, servo_),
         desk_{services_, servo_, scenes_, publisher_, SteadyClock::now(), [this] { return count_clients(); },
               lease_},
+        entrances_(io_, settings_,
+                   [this](std::shared_ptr<Stream> stream, std::function<Peer()> assess) {
+                     welcome(std::move(stream), std::move(assess));
+                   }),
+        addresses_(entrances_.addresses()),
         poll_timer_(io_),
         stop_timer_(io_) {
     publisher_.learn(scenes_.current());
@@ -70,15 +61,6 @@ class Server::Impl {
           });
       flight_->learn(scenes_.current(), scenes_.shared_running(), 0);
     }
-    std::vector<Passed> passed = take(settings_.passed_sockets);
-    for (const v1::Listen& listen : or_default(settings_.listen)) {
-      open(listen, passed);
-    }
-    if (!passed.empty()) {
-      throw ListenError("the service manager passes a socket at " + passed.front().path +
-                        ", but no listen.unix of the config has that path; name it there, or change " +
-                        "ListenStream= of the socket unit");
-    }
     if (settings_.metrics) {
       metrics_.emplace(io_, *settings_.metrics, [this] { return make_metrics(); });
       addresses_.insert(addresses_.end(), metrics_->addresses().begin(), metrics_->addresses().end());
@@ -86,12 +68,7 @@ class Server::Impl {
   }
 
   void run() {
-    for (auto& acceptor : local_acceptors_) {
-      accept(acceptor);
-    }
-    for (auto& acceptor : tcp_acceptors_) {
-      accept(acceptor);
-    }
+    entrances_.open();
     if (metrics_) {
       metrics_->start();
     }
@@ -101,18 +78,13 @@ class Server::Impl {
 
   // what can fail is done here, what clients see on the io thread
   void reload(ServerSettings settings) {
-    const auto changes = std::make_shared<std::list<Change>>();
-    for (const v1::Listen& listen : or_default(settings.listen)) {
-      prepare(listen, *changes);
-    }
-    asio::post(io_, [this, changes, wanted = std::move(settings)] {
+    std::function<void()> change_entrances = entrances_.prepare(settings.listen);
+    asio::post(io_, [this, change_entrances = std::move(change_entrances), wanted = std::move(settings)] {
       settings_.session = wanted.session;
       settings_.clients = wanted.clients;
       settings_.clients_per_user = wanted.clients_per_user;
       lease_.set_policy(wanted.drive);
-      for (Change& change : *changes) {
-        apply(change);
-      }
+      change_entrances();
       cut_off_changed();
     });
   }
@@ -124,111 +96,11 @@ class Server::Impl {
   const std::vector<std::string>& addresses() const noexcept { return addresses_; }
 
  private:
-  // a way in, and what decides about who comes
-  template <class Protocol>
-  struct Entrance {
-    typename Protocol::acceptor acceptor;
-    asio::steady_timer pause;
-    const v1::Listen listen;               // as it was opened
-    UnixListener* listener;                // of a Unix socket
-    std::optional<Authoriser> authoriser;  // of a Unix socket
-    std::unique_ptr<TlsContext> tls;       // of TCP; none: observing only
-    std::vector<v1::Listen::AllowName> allow{};
-  };
-
-  // what a reload gives to an entrance
-  struct Change {
-    Entrance<Local>* local = nullptr;
-    Entrance<Tcp>* tcp = nullptr;
-    std::optional<Authoriser> authoriser{};
-    std::unique_ptr<TlsContext> tls{};
-    std::vector<v1::Listen::AllowName> allow{};
-  };
-
-  struct Passed {
-    std::string path;
-    Descriptor socket;
-  };
-
   struct Client {
     std::shared_ptr<Session> session;
     std::optional<v1::Role> role;
     std::function<Peer()> assess;  // who it is by the rules of now
   };
-
-  static std::vector<Passed> take(const std::vector<int>& sockets) {
-    std::vector<Passed> passed;
-    passed.reserve(sockets.size());
-    for (const int socket : sockets) {
-      passed.push_back({"", Descriptor(socket)});
-    }
-    for (Passed& each : passed) {
-      each.path = path_of_passed(each.socket.get());
-    }
-    return passed;
-  }
-
-  void open(const v1::Listen& listen, std::vector<Passed>& passed) {
-    if (listen.has_tcp()) {
-      const int socket = listen_tcp(listen.tcp());
-      const auto family = listen.tcp().address().find(':') == std::string::npos ? Tcp::v4() : Tcp::v6();
-      Entrance<Tcp>& entrance = tcp_acceptors_.emplace_back(Entrance<Tcp>{Tcp::acceptor(io_, family, socket),
-                                                                          asio::steady_timer(io_), listen,
-                                                                          nullptr, std::nullopt, nullptr});
-      if (listen.tcp().has_tls()) {
-        entrance.tls = std::make_unique<TlsContext>(listen.tcp().tls());
-        entrance.allow.assign(listen.tcp().allow().begin(), listen.tcp().allow().end());
-      }
-      const auto endpoint = entrance.acceptor.local_endpoint();
-      addresses_.push_back(listen.tcp().address() + ":" + std::to_string(endpoint.port()));
-      return;
-    }
-    Authoriser authoriser = authorise(listen.unix());
-    UnixListener& listener = listen_unix(listen.unix(), passed);
-    local_acceptors_.push_back({Local::acceptor(io_, Local(), listener.release()), asio::steady_timer(io_),
-                                listen, &listener, std::move(authoriser), nullptr});
-    addresses_.push_back(listener.path());
-  }
-
-  UnixListener& listen_unix(const v1::Listen::Unix& config, std::vector<Passed>& passed) {
-    const std::string path = config.path().empty() && !passed.empty() ? default_socket_path() : config.path();
-    const auto found =
-        std::find_if(passed.begin(), passed.end(), [&](const Passed& each) { return each.path == path; });
-    if (found == passed.end()) {
-      return listeners_.emplace_back(config);
-    }
-    UnixListener& listener = listeners_.emplace_back(config, std::move(found->socket));
-    passed.erase(found);
-    return listener;
-  }
-
-  void prepare(const v1::Listen& listen, std::list<Change>& changes) {
-    for (Entrance<Local>& entrance : local_acceptors_) {
-      if (!listen.has_tcp() && entrance.listen.unix().path() == listen.unix().path()) {
-        changes.push_back({.local = &entrance, .authoriser = authorise(listen.unix())});
-      }
-    }
-    const v1::Listen::Tcp& tcp = listen.tcp();
-    for (Entrance<Tcp>& entrance : tcp_acceptors_) {
-      const v1::Listen::Tcp& opened = entrance.listen.tcp();
-      if (listen.has_tcp() && tcp.has_tls() && opened.has_tls() && opened.address() == tcp.address() &&
-          opened.port() == tcp.port()) {
-        changes.push_back({.tcp = &entrance,
-                           .tls = std::make_unique<TlsContext>(tcp.tls()),
-                           .allow = {tcp.allow().begin(), tcp.allow().end()}});
-      }
-    }
-  }
-
-  static void apply(Change& change) {
-    if (change.local != nullptr) {
-      change.local->authoriser = std::move(change.authoriser);
-      change.local->listener->admit(*change.local->authoriser);
-    } else {
-      change.tcp->tls = std::move(change.tls);
-      change.tcp->allow = std::move(change.allow);
-    }
-  }
 
   void cut_off_changed() {
     for (const auto& [id, client] : sessions_) {
@@ -238,76 +110,6 @@ class Server::Impl {
         client.session->cut_off(
             make_error(v1::Error::REFUSED, "what you may do has changed; connect again to go on"));
       }
-    }
-  }
-
-  static Authoriser authorise(const v1::Listen::Unix& config) {
-    try {
-      return Authoriser::from_config(config);
-    } catch (const std::runtime_error& error) {
-      throw ListenError(error.what());
-    }
-  }
-
-  template <class Protocol>
-  void accept(Entrance<Protocol>& entrance) {
-    entrance.acceptor.async_accept(
-        [this, &entrance](const error_code& error, typename Protocol::socket socket) {
-          if (!entrance.acceptor.is_open()) {
-            return;
-          }
-          if (error) {
-            tell_seldom(next_accept_log_, "cannot accept a client: " + error.message());
-            entrance.pause.expires_after(kAcceptPause);
-            entrance.pause.async_wait([this, &entrance](const error_code& ended) {
-              if (!ended) {
-                accept(entrance);
-              }
-            });
-            return;
-          }
-          receive(Stream::Socket(std::move(socket)), entrance);
-          accept(entrance);
-        });
-  }
-
-  template <class Protocol>
-  void receive(Stream::Socket socket, Entrance<Protocol>& entrance) {
-    if (entrance.authoriser) {
-      const std::optional<PeerCredentials> credentials = peer_credentials(socket.native_handle());
-      welcome(make_plain_stream(std::move(socket)), [this, &entrance, credentials] {
-        return local_peer(credentials, *entrance.authoriser, settings_.role_of);
-      });
-      return;
-    }
-    error_code ignored;
-    socket.set_option(Tcp::no_delay(true), ignored);
-    if (!entrance.tls) {
-      welcome(make_plain_stream(std::move(socket)), unknown_peer);
-      return;
-    }
-    if (handshakes_ >= settings_.clients) {
-      return;  // nothing can be said before the handshake
-    }
-    ++handshakes_;
-    const auto on_peer = [this, &entrance](EncryptedPeer peer, const std::string& error) {
-      --handshakes_;
-      if (!peer.stream) {
-        tell_seldom(next_handshake_log_, "a client over TLS did not get in: " + error);
-      } else if (!leaving_) {
-        welcome(std::move(peer.stream),
-                [&entrance, names = std::move(peer.names)] { return certified_peer(names, entrance.allow); });
-      }
-    };
-    entrance.tls->handshake(std::move(socket), settings_.session.hello, on_peer);
-  }
-
-  // at most once a second: others can cause it as often as they like
-  static void tell_seldom(SteadyClock::time_point& next, const std::string& warning) {
-    const auto now = SteadyClock::now();
-    if (now >= next) {
-      spdlog::warn("{}", warning);
-      next = now + std::chrono::seconds(1);
     }
   }
 
@@ -466,15 +268,7 @@ class Server::Impl {
     if (metrics_) {
       metrics_->stop();
     }
-    error_code ignored;
-    for (auto& entrance : local_acceptors_) {
-      entrance.acceptor.close(ignored);
-      entrance.pause.cancel();
-    }
-    for (auto& entrance : tcp_acceptors_) {
-      entrance.acceptor.close(ignored);
-      entrance.pause.cancel();
-    }
+    entrances_.close();
     if (sessions_.empty()) {
       io_.stop();
       return;
@@ -500,17 +294,12 @@ class Server::Impl {
   DriveLease lease_;
   Desk desk_;
   std::optional<FlightRecorder> flight_;
-  std::list<UnixListener> listeners_;
   asio::io_context io_{1};
-  std::list<Entrance<Local>> local_acceptors_;
-  std::list<Entrance<Tcp>> tcp_acceptors_;
+  Entrances entrances_;
   std::optional<MetricsServer> metrics_;
   std::vector<std::string> addresses_;
   std::map<ClientId, Client> sessions_;
   ClientId last_client_ = 0;
-  std::size_t handshakes_ = 0;  // of TLS, under way
-  SteadyClock::time_point next_accept_log_{};
-  SteadyClock::time_point next_handshake_log_{};
   asio::steady_timer poll_timer_;
   asio::steady_timer stop_timer_;
   SteadyClock::time_point next_flush_{};
