@@ -3,6 +3,7 @@
 // it. Its scene has one object, "block", and one finger of two HIPs, "thumb", on the device "left".
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -75,7 +76,8 @@ inline ipc::BuiltScene edit_example(const v1::EditScene& request, const ipc::Run
 
 class TestDaemon {
  public:
-  explicit TestDaemon(ipc::ServerSettings settings = {})
+  /// `on_poll` is called on the io thread, now and then.
+  explicit TestDaemon(ipc::ServerSettings settings = {}, std::function<void()> on_poll = {})
       : mailbox_(std::make_unique<servo::Mailbox>(
             servo::Capacity{.objects = 8, .fingers = 2, .hips = 4096, .contacts = 64, .devices = 2})),
         servo_(*mailbox_) {
@@ -95,6 +97,7 @@ class TestDaemon {
                              is_armed_ = armed;
                              ++armed_changes_;
                            }};
+    services.on_poll = std::move(on_poll);
     v1::DeviceDescription& device = services.devices.emplace_back();
     device.set_name("left");
     device.set_driver("simulated");
