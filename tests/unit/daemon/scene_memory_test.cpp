@@ -8,8 +8,8 @@
 #include "rt/memory_reserve.h"
 #include "tests/support/failing_allocation.h"
 
-// protobuf loses a message when memory runs out while it copies one: a few bytes, once for each scene that is
-// too large NOLINTNEXTLINE(bugprone-reserved-identifier): LeakSanitizer asks for this name
+// protobuf loses a few bytes for each message that it copies when memory runs out
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:google::protobuf::\nleak:haptic::v1::\n";
 }
