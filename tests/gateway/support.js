@@ -75,6 +75,12 @@ export async function startGateway(...args) {
   return Object.assign(run, { url, socketUrl: url.replace(/^http/, "ws") });
 }
 
+/** At most one frame for so many ticks; one that was late does not put off the next. */
+export function assertOneForEach(ticks, frames) {
+  const groups = frames.map(({ tick }) => Math.floor(tick / ticks));
+  groups.slice(1).forEach((group, i) => assert(group > groups[i], `two frames for ${ticks} ticks: ${frames[i + 1].tick}`));
+}
+
 /** Resident memory of a process, bytes. */
 export function memoryOf(child) {
   const [, kilobytes] = /VmRSS:\s+(\d+) kB/.exec(readFileSync(`/proc/${child.pid}/status`, "utf8"));
